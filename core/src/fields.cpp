@@ -1,0 +1,23 @@
+#include <algorithm>
+#include <cstdint>
+#include <taut/core/fields.hpp>
+
+namespace taut {
+
+void* allocate_zeroed(std::size_t bytes) {
+  constexpr std::size_t align = 64;
+  const std::size_t rounded = (bytes + align - 1) / align * align;
+  void* memory = std::aligned_alloc(align, rounded);
+  if (!memory) throw std::bad_alloc();
+  constexpr std::size_t chunk = 1 << 16;
+  char* p = static_cast<char*>(memory);
+  const auto chunks = static_cast<std::int64_t>((rounded + chunk - 1) / chunk);
+#pragma omp parallel for schedule(static) if (chunks > 16)
+  for (std::int64_t c = 0; c < chunks; ++c) {
+    const std::size_t at = static_cast<std::size_t>(c) * chunk;
+    std::memset(p + at, 0, std::min(chunk, rounded - at));
+  }
+  return memory;
+}
+
+}  // namespace taut
