@@ -20,6 +20,7 @@ taut_require(fmt fmt::fmt https://github.com/fmtlib/fmt/archive/refs/tags/9.1.0.
 taut_require(nanoflann nanoflann::nanoflann
              https://github.com/jlblancoc/nanoflann/archive/refs/tags/v1.4.3.tar.gz)
 if(TAUT_HDF5)
+  enable_language(C) # FindHDF5 asks the C compiler
   find_package(HDF5 QUIET COMPONENTS C)
   if(NOT HDF5_FOUND)
     message(STATUS "taut: HDF5 not found, so field output (.vtkhdf) is left out")
