@@ -1,0 +1,10 @@
+#pragma once
+/// \file
+/// The one header for users.
+
+#include <taut/core/error.hpp>
+#include <taut/core/geometry.hpp>
+#include <taut/core/kernel.hpp>
+#include <taut/core/method.hpp>
+#include <taut/core/simulation.hpp>
+#include <taut/materials/material.hpp>
