@@ -4,6 +4,8 @@
 
 #include <stdexcept>
 #include <string>
+#include <vector>
+#include <vector>
 
 namespace taut {
 
@@ -24,5 +26,8 @@ class RunError : public Error {
  public:
   using Error::Error;
 };
+
+/// Names for an error message: "a, b, c".
+std::string join_names(const std::vector<std::string>& names);
 
 }  // namespace taut

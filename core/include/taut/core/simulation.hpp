@@ -79,6 +79,8 @@ class Simulation {
   /// Another material for the particles of a region (bonded to the rest).
   void set_material(const Where<D>& where, std::shared_ptr<const Material<D>> material);
   void set_velocity(const std::function<Vec<D>(const Vec<D>& X)>& velocity);
+  /// Initial displacement; constraints still hold.
+  void set_displacement(const std::function<Vec<D>(const Vec<D>& X)>& displacement);
 
   // Boundary conditions and loads. Each \throws InputError when it selects no particle.
   void clamp(const Where<D>& where);                 ///< displacement zero
@@ -89,8 +91,9 @@ class Simulation {
   /// area along the face normal, or evenly where areas are unknown; times `history`.
   void load(const Where<D>& where, const Vec<D>& force, History history = {});
   void body_force(const Vec<D>& acceleration, History history = {});  ///< [m/s^2]
-  /// The body continues as its mirror image beyond the plane X[axis] = its bounding box's minimum (side 0) or maximum (side 1).
-  void symmetry_plane(int axis, int side);
+  /// The body continues as its mirror image beyond the plane X[axis] = `at` [m], which must bound it. Particles on the plane slide in it. The
+  /// loads of a scene are those of the part that is modelled.
+  void symmetry_plane(int axis, double at);
 
   void prepare();
   RunResult run(double duration, const RunOptions& options = {});

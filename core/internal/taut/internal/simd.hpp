@@ -9,6 +9,7 @@
 namespace taut {
 
 #define TAUT_INLINE inline __attribute__((always_inline))
+#define TAUT_INLINE_LAMBDA __attribute__((always_inline))
 
 typedef double Pack __attribute__((vector_size(lanes * sizeof(double))));
 typedef float PackF __attribute__((vector_size(lanes * sizeof(float))));

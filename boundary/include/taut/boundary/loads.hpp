@@ -1,0 +1,48 @@
+#pragma once
+/// \file
+/// Dead loads and body forces.
+
+#include <functional>
+#include <taut/core/fields.hpp>
+#include <taut/core/types.hpp>
+#include <vector>
+
+namespace taut {
+
+/// Forces that do not depend on the motion.
+template <int D>
+class Loads {
+ public:
+  using History = std::function<double(double t)>;
+
+  /// `forces[i]` [N] on `particles[i]`, times history(t) (1 when empty).
+  void add(std::vector<Index> particles, std::vector<Vec<D>> forces, History history = {});
+  /// Acceleration [m/s^2] of all of the first `n` particles.
+  void add_body_force(Index n, const Vec<D>& acceleration, History history = {});
+  /// Every load grows from zero by this factor of time as well (quasi-static ramps); empty = 1.
+  void set_ramp(History ramp) { ramp_ = std::move(ramp); }
+
+  /// a += force / mass. `mass` is one value a particle.
+  void add_to(double t, const Field& mass, Field& a) const;
+  /// Euclidean norm over all particles of the applied forces [N].
+  double norm(double t, const Field& mass) const;
+  bool empty() const { return point_.empty() && body_.empty(); }
+
+ private:
+  struct Point {
+    std::vector<Index> particles;
+    std::vector<Vec<D>> forces;
+    History history;
+  };
+  struct Body {
+    Index n;
+    Vec<D> acceleration;
+    History history;
+  };
+  double factor(const History& history, double t) const;
+  std::vector<Point> point_;
+  std::vector<Body> body_;
+  History ramp_;
+};
+
+}  // namespace taut

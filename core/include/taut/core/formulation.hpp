@@ -1,0 +1,77 @@
+#pragma once
+/// \file
+/// What a formulation is to the rest of taut, and the registry of formulations.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <taut/boundary/constraints.hpp>
+#include <taut/boundary/loads.hpp>
+#include <taut/core/method.hpp>
+#include <taut/core/particles.hpp>
+#include <taut/integrators/dynamics.hpp>
+#include <vector>
+
+namespace taut {
+
+/// Why a state cannot be continued, and which particle shows it (internal index).
+struct Failure {
+  std::string what;
+  Index particle = 0;
+};
+
+/// What every formulation gets: it keeps references, so all must outlive it.
+template <int D>
+struct FormulationSetup {
+  Particles<D>& particles;
+  const Constraints<D>& constraints;
+  const Loads<D>& loads;
+  const Method& method;
+};
+
+/// The spatial discretisation of a body: accelerations from the state of its particles. A new formulation is one
+/// class in one file and one line in `formulation_registry` (formulation.cpp).
+template <int D>
+class Formulation : public Dynamics {
+ public:
+  explicit Formulation(const FormulationSetup<D>& setup);
+
+  std::span<double> positions() override { return p_.x.flat(); }
+  std::span<double> velocities() override { return p_.v.flat(); }
+  std::span<const double> accelerations() override { return p_.a.flat(); }
+  std::span<const double> masses() override { return p_.m_flat.flat(); }
+  void constrain_positions(double t) override { constraints_.apply_to_positions(t, p_.X, p_.x); }
+  void constrain_velocities(double t) override { constraints_.apply_to_velocities(t, p_.X, p_.v); }
+
+  /// Set by the update that found the state broken.
+  const std::optional<Failure>& failure() const { return failure_; }
+  /// Checks too costly for every evaluation (lost neighbours, runaway speed); sets `failure`.
+  virtual void inspect();
+
+  virtual Mat<D> cauchy_stress(Index i) const = 0;
+  /// \throws InputError where the formulation has no reference configuration.
+  virtual Mat<D> deformation_gradient(Index i) const;
+  virtual Mat<D> first_piola_kirchhoff(Index i) const;
+  virtual double strain_energy() const;
+  virtual std::int64_t pairs() const = 0;
+  virtual std::int64_t rebuilds() const { return 0; }
+  virtual std::size_t bytes() const = 0;
+
+ protected:
+  /// Applied loads and constraints on top of the internal accelerations; the last act of update_accelerations.
+  void finish_accelerations(double t);
+
+  Particles<D>& p_;
+  const Constraints<D>& constraints_;
+  const Loads<D>& loads_;
+  const Method& method_;
+  std::optional<Failure> failure_;
+};
+
+/// \throws InputError listing the valid names, or when the formulation cannot take a material.
+template <int D>
+std::unique_ptr<Formulation<D>> make_formulation(const FormulationSetup<D>& setup);
+std::vector<std::string> formulation_names();
+
+}  // namespace taut

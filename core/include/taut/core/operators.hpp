@@ -1,0 +1,54 @@
+#pragma once
+/// \file
+/// Discrete gradient operators on a pair list.
+
+#include <string>
+#include <string_view>
+#include <taut/core/fields.hpp>
+#include <taut/core/kernel.hpp>
+#include <taut/core/method.hpp>
+#include <taut/core/particles.hpp>
+#include <taut/neighbors/pair_list.hpp>
+#include <vector>
+
+namespace taut {
+
+/// A gradient operator and its adjoint, in factored form: with one vector G_ab for each directed pair and one matrix M_a for each particle,
+///   F_a = [sum_b x_ab (x) G_ab] M_a^T + F0_a,   x_ab = x_b - x_a,
+///   f_a = sum_b (Q_a + Q_b) G_ab,        Q_a = V_a P_a M_a,
+/// where G_ab = V_a V_b grad W_ab = -G_ba, and M_a = I / V_a (`standard`) or K_a / V_a (`corrected`). F0 is absent where
+/// linear fields are exact; for `standard` it makes F = I + grad u, so that the body is free of stress at rest. The
+/// force is the exact adjoint of the gradient, so linear momentum is kept to round-off.
+/// Slot k of lane l holds component d of G at vectors[(k * D + d) * lanes + l]; zero where the slot has no pair.
+template <int D>
+struct PairOperator {
+  PairPrecision precision = PairPrecision::single_precision;
+  AlignedArray<float> vectors_f;
+  AlignedArray<double> vectors_d;
+  Field M;    ///< D×D components, row-major; zero beyond the bodies' particles
+  Field F0;   ///< D×D components, or empty
+  Field sum;  ///< D components: sum_b G_ab
+
+  /// G_ab of lane l in slot k.
+  Vec<D> vector(std::int64_t k, int lane) const {
+    Vec<D> g;
+    for (int d = 0; d < D; ++d) {
+      const std::size_t at = static_cast<std::size_t>((k * D + d) * lanes + lane);
+      g[d] = precision == PairPrecision::single_precision ? static_cast<double>(vectors_f[at]) : vectors_d[at];
+    }
+    return g;
+  }
+  std::size_t bytes() const { return vectors_f.bytes() + vectors_d.bytes() + M.bytes() + F0.bytes() + sum.bytes(); }
+};
+
+/// Builds an operator by its name ("standard", "corrected") in the reference configuration.
+/// `corrected`: K_a = [sum_b V_b grad W_ab (x) X_ab]^-1, so that sum_b X_ab (x) g_ab = I (Randles & Libersky 1996; Bonet & Lok 1999). The matrix is made
+/// from the pair vectors as stored, hence linear fields are exact in single precision as well.
+/// \throws InputError for an unknown name (valid ones listed), or a particle whose matrix is singular: its id, its position, how many
+/// neighbours it has, and what to do.
+template <int D>
+PairOperator<D> make_operator(std::string_view name, const Particles<D>& particles, const PairList& pairs,
+                              const Kernel& kernel, double smoothing_length, PairPrecision precision);
+std::vector<std::string> operator_names();
+
+}  // namespace taut

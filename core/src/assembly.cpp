@@ -1,0 +1,97 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <taut/core/error.hpp>
+#include <taut/internal/assembly.hpp>
+#include <taut/neighbors/search.hpp>
+
+namespace taut {
+
+namespace {
+// What lies on a symmetry plane, in spacings: round-off of a lattice, far below any jitter that is meant.
+constexpr double on_plane = 1e-6;
+}  // namespace
+
+template <int D>
+std::vector<double> multiplicity(const Cloud<D>& cloud, const std::vector<typename MirrorMap<D>::Plane>& planes) {
+  std::vector<double> times(cloud.size(), 1.0);
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    for (const auto& plane : planes)
+      if (std::abs(cloud.X[i][plane.axis] - plane.at) <= on_plane * cloud.dx) times[i] *= 2;
+  return times;
+}
+
+template <int D>
+Particles<D> assemble(const Cloud<D>& cloud, std::vector<std::shared_ptr<const Material<D>>> materials,
+                      const std::vector<std::uint8_t>& material, const std::vector<typename MirrorMap<D>::Plane>& planes,
+                      double reach) {
+  const std::size_t n = cloud.size();
+  if (n == 0) throw InputError("the body has no particles");
+  for (const auto& plane : planes)
+    for (std::size_t i = 0; i < n; ++i) {
+      const double beyond = (cloud.X[i][plane.axis] - plane.at) * (plane.side == 0 ? -1 : 1);
+      if (beyond > on_plane * cloud.dx)
+        throw InputError(fmt::format("the symmetry plane {} = {:g} cuts the body: particle {} lies beyond it", "xyz"[plane.axis],
+                                     plane.at, i));
+    }
+
+  Particles<D> p;
+  p.n = static_cast<Index>(n);
+  p.dx = cloud.dx;
+  p.materials = std::move(materials);
+
+  Field unordered(n, D);
+  for (std::size_t i = 0; i < n; ++i) unordered.set_vec<D>(i, cloud.X[i]);
+  PointView<D> view;
+  for (int d = 0; d < D; ++d) view.x[static_cast<std::size_t>(d)] = unordered.component(d);
+  view.n = p.n;
+  p.id = locality_order<D>(view, reach);
+  p.place.resize(n);
+  std::vector<Vec<D>> ordered(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto id = static_cast<std::size_t>(p.id[i]);
+    p.place[id] = static_cast<Index>(i);
+    ordered[i] = cloud.X[id];
+  }
+  if (!planes.empty()) p.mirror = MirrorMap<D>(planes, ordered, reach, on_plane * cloud.dx);
+  p.total = p.n + p.mirror.size();
+
+  const auto total = static_cast<std::size_t>(p.total);
+  p.X = Field(total, D);
+  p.v = p.a = p.m_flat = Field(total, D);
+  p.V = p.m = Field(total, 1);
+  // Padding stands far from everything: no loop over whole packs mistakes it for a neighbour.
+  std::fill(p.X.flat().begin(), p.X.flat().end(), 1e30);
+  std::fill(p.m.flat().begin(), p.m.flat().end(), 1.0);
+  const std::vector<double> times = multiplicity<D>(cloud, planes);
+  p.material.resize(n);
+  if (!cloud.B.empty()) p.B.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto id = static_cast<std::size_t>(p.id[i]);
+    const double V = cloud.V[id] * times[id];
+    if (!(V > 0) || !std::isfinite(V)) throw InputError(fmt::format("particle {} has volume {:g}; it must be positive", id, V));
+    p.X.template set_vec<D>(i, ordered[i]);
+    p.V.component(0)[i] = V;
+    p.material[i] = material[id];
+    p.m.component(0)[i] = V * p.materials[material[id]]->density();
+    for (int d = 0; d < D; ++d) p.m_flat.component(d)[i] = p.m.component(0)[i];
+    if (!cloud.B.empty()) p.B[i] = cloud.B[id];
+  }
+  p.mirror.positions(p.X);
+  p.mirror.scalars(p.V);
+  p.mirror.scalars(p.m);
+  p.x = p.X;
+  return p;
+}
+
+#define TAUT_INSTANTIATE(D)                                                                                           \
+  template std::vector<double> multiplicity<D>(const Cloud<D>&, const std::vector<typename MirrorMap<D>::Plane>&); \
+  template Particles<D> assemble<D>(const Cloud<D>&, std::vector<std::shared_ptr<const Material<D>>>,                 \
+                                    const std::vector<std::uint8_t>&,                                                 \
+                                    const std::vector<typename MirrorMap<D>::Plane>&, double);
+TAUT_INSTANTIATE(1)
+TAUT_INSTANTIATE(2)
+TAUT_INSTANTIATE(3)
+#undef TAUT_INSTANTIATE
+
+}  // namespace taut

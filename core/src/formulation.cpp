@@ -1,0 +1,93 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <taut/core/error.hpp>
+#include <taut/core/formulation.hpp>
+#include <taut/internal/formulations.hpp>
+
+namespace taut {
+
+namespace {
+
+template <int D>
+struct Entry {
+  const char* name;
+  std::unique_ptr<Formulation<D>> (*make)(const FormulationSetup<D>&);
+};
+
+template <int D>
+const std::vector<Entry<D>>& formulation_registry() {
+  static const std::vector<Entry<D>> entries = {
+      {"tl_displacement", make_tl_displacement<D>},
+      {"ul_basic", make_ul_basic<D>},
+      {"ul_artificial_stress", make_ul_artificial_stress<D>},
+  };
+  return entries;
+}
+
+}  // namespace
+
+std::vector<std::string> formulation_names() {
+  std::vector<std::string> names;
+  for (const auto& entry : formulation_registry<1>()) names.emplace_back(entry.name);
+  return names;
+}
+
+template <int D>
+std::unique_ptr<Formulation<D>> make_formulation(const FormulationSetup<D>& setup) {
+  for (const auto& entry : formulation_registry<D>())
+    if (setup.method.formulation == entry.name) return entry.make(setup);
+  throw InputError(fmt::format("unknown formulation \"{}\"; valid: {}", setup.method.formulation,
+                               join_names(formulation_names())));
+}
+
+template <int D>
+Formulation<D>::Formulation(const FormulationSetup<D>& setup)
+    : p_(setup.particles), constraints_(setup.constraints), loads_(setup.loads), method_(setup.method) {}
+
+template <int D>
+void Formulation<D>::finish_accelerations(double t) {
+  loads_.add_to(t, p_.m, p_.a);
+  constraints_.apply_to_accelerations(p_.a);
+}
+
+template <int D>
+void Formulation<D>::inspect() {
+  // No elastic body moves faster than its own waves by this much; what does is flying apart.
+  constexpr double runaway = 20;
+  double speed = 0;
+  for (const auto& material : p_.materials) speed = std::max(speed, material->wave_speed());
+  for (Index i = 0; i < p_.n; ++i) {
+    const double v2 = p_.v.template vec<D>(i).squaredNorm();
+    if (v2 <= runaway * runaway * speed * speed) continue;
+    failure_ = Failure{std::isfinite(v2) ? "runaway energy" : "not a number", i};
+    return;
+  }
+}
+
+template <int D>
+Mat<D> Formulation<D>::deformation_gradient(Index) const {
+  throw InputError(fmt::format("{} has no deformation gradient: it keeps no reference configuration", method_.formulation));
+}
+
+template <int D>
+Mat<D> Formulation<D>::first_piola_kirchhoff(Index) const {
+  throw InputError(
+      fmt::format("{} has no first Piola-Kirchhoff stress: it keeps no reference configuration", method_.formulation));
+}
+
+template <int D>
+double Formulation<D>::strain_energy() const {
+  throw InputError(fmt::format("{} has no stored energy", method_.formulation));
+}
+
+#define TAUT_INSTANTIATE(D)      \
+  template class Formulation<D>; \
+  template std::unique_ptr<Formulation<D>> make_formulation<D>(const FormulationSetup<D>&);
+TAUT_INSTANTIATE(1)
+TAUT_INSTANTIATE(2)
+TAUT_INSTANTIATE(3)
+#undef TAUT_INSTANTIATE
+
+}  // namespace taut

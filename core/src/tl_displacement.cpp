@@ -1,0 +1,314 @@
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <taut/core/error.hpp>
+#include <taut/core/operators.hpp>
+#include <taut/internal/formulations.hpp>
+#include <taut/internal/material_groups.hpp>
+#include <taut/internal/pair_passes.hpp>
+#include <taut/internal/stretch_bounds.hpp>
+#include <taut/internal/zero_energy.hpp>
+#include <taut/neighbors/search.hpp>
+
+namespace taut {
+
+namespace {
+
+/// Displacement-based total Lagrangian form (Kistner 2010 ch. 5; Tran-Duc et al. 2023, 2.3): F from positions, P from the
+/// material, forces by the adjoint of the gradient.
+template <int D>
+class TlDisplacement final : public Formulation<D> {
+  using Base = Formulation<D>;
+  using Base::p_;
+  static constexpr int chunk = chunk_particles;
+
+ public:
+  explicit TlDisplacement(const FormulationSetup<D>& setup)
+      : Base(setup), groups_(p_), kernel_(setup.method.kernel, D), h_(setup.method.support_dx * p_.dx / kernel_.radius_factor()) {
+    for (const auto& material : p_.materials) {
+      const auto* hyperelastic = dynamic_cast<const Hyperelastic<D>*>(material.get());
+      if (!hyperelastic)
+        throw InputError(fmt::format("tl_displacement needs a hyperelastic material; \"{}\" gives stress rates. Valid: "
+                                     "linear_elastic, st_venant_kirchhoff, corotated_svk, neo_hookean",
+                                     material->name()));
+      materials_.push_back(hyperelastic);
+    }
+    const PointView<D> points{columns(p_.X), p_.total};
+    pairs_ = find_pairs<D>(points, setup.method.support_dx * p_.dx, {search_method(setup.method.neighbours)});
+    op_ = make_operator<D>(setup.method.operators, p_, pairs_, kernel_, h_, setup.method.pair_precision);
+    Q_ = Field(static_cast<std::size_t>(p_.total), D * D);
+    if (setup.method.zero_energy_control > 0)
+      control_.emplace(p_, pairs_, kernel_, h_, setup.method.zero_energy_control);
+    frequency_ = largest_frequency();
+  }
+
+  void update_accelerations(double) override;
+
+  double stable_step() const override {
+    double ratio = 1;
+    for (const auto* material : materials_)
+      ratio = std::max(ratio, material->wave_speed(stretch_.min, stretch_.max) / material->wave_speed());
+    return 2 / (frequency_ * ratio);
+  }
+
+  Mat<D> deformation_gradient(Index i) const override {
+    Pack F[D * D];
+    gradient(i / lanes, p_.x, F);
+    add_offset(i / lanes, F);
+    Mat<D> value;
+    for (int c = 0; c < D * D; ++c) value(c / D, c % D) = F[c][i % lanes];
+    return value;
+  }
+  Mat<D> first_piola_kirchhoff(Index i) const override {
+    std::array<double, D * D * lanes> block{};
+    const Mat<D> F = deformation_gradient(i);
+    for (int c = 0; c < D * D; ++c)
+      for (int l = 0; l < lanes; ++l) block[static_cast<std::size_t>(c * lanes + l)] = F(c / D, c % D);
+    materials_[p_.material[i]]->stress({lanes, lanes, block.data(), block.data(), nullptr});
+    Mat<D> P;
+    for (int c = 0; c < D * D; ++c) P(c / D, c % D) = block[static_cast<std::size_t>(c * lanes)];
+    return P;
+  }
+  Mat<D> cauchy_stress(Index i) const override {
+    const Mat<D> F = deformation_gradient(i);
+    return first_piola_kirchhoff(i) * F.transpose() / F.determinant();
+  }
+  double strain_energy() const override;
+
+  std::int64_t pairs() const override { return pairs_.pairs(); }
+  std::size_t bytes() const override {
+    return pairs_.bytes() + op_.bytes() + Q_.bytes() + (control_ ? control_->bytes() : 0);
+  }
+
+ private:
+  static std::array<const double*, D> columns(const Field& f) {
+    std::array<const double*, D> c{};
+    for (int d = 0; d < D; ++d) c[static_cast<std::size_t>(d)] = f.component(d);
+    return c;
+  }
+
+  TAUT_INLINE void gradient(Index s, const Field& x, Pack (&F)[D * D]) const {
+    const Columns<D> xc(x);
+    const Columns<D * D> M(op_.M);
+    if (op_.precision == PairPrecision::single_precision)
+      gradient_of_slice<D>(s, pairs_, op_.vectors_f.data(), xc, M, F);
+    else
+      gradient_of_slice<D>(s, pairs_, op_.vectors_d.data(), xc, M, F);
+  }
+
+  TAUT_INLINE void add_offset(Index s, Pack (&F)[D * D]) const {
+    if (op_.F0.empty()) return;
+    for (int k = 0; k < D * D; ++k) F[k] += load(op_.F0.component(k) + s * lanes);
+  }
+  template <class Real>
+  void gradient_pass(const Real* vectors);
+  template <class Real>
+  void force_pass(const Real* vectors);
+  double largest_frequency();
+
+  MaterialGroups groups_;
+  Kernel kernel_;
+  double h_;
+  std::vector<const Hyperelastic<D>*> materials_;
+  PairList pairs_;
+  PairOperator<D> op_;
+  Field Q_;
+  std::optional<ZeroEnergyControl<D>> control_;
+  StretchBounds stretch_;
+  double frequency_ = 0;
+};
+
+template <int D>
+template <class Real>
+void TlDisplacement<D>::gradient_pass(const Real* vectors) {
+  const Columns<D> x(p_.x);
+  const Columns<D * D> M(op_.M);
+  const double* V = p_.V.component(0);
+  double* Q[D * D];
+  for (int c = 0; c < D * D; ++c) Q[c] = Q_.component(c);
+  Index inverted = p_.n;
+  StretchExtremes<D> extremes;
+#pragma omp parallel
+  {
+    StretchExtremes<D> mine;
+#pragma omp for schedule(static) reduction(min : inverted)
+    for (Index c = 0; c < groups_.chunks(); ++c) {
+      alignas(64) double F[D * D * chunk];
+      const Index first = groups_.first_slice(c), last = groups_.last_slice(c);
+      for (Index s = first; s < last; ++s) {
+        Pack f[D * D];
+        gradient_of_slice<D>(s, pairs_, vectors, x, M, f);
+        add_offset(s, f);
+        if ((s + 1) * lanes > p_.n)  // lanes behind the last particle stay undeformed
+          for (int l = p_.n - s * lanes; l < lanes; ++l)
+            for (int k = 0; k < D * D; ++k) f[k][l] = k % (D + 1) == 0;
+        const Pack J = mine.add(f);
+        for (int l = 0; l < lanes; ++l)
+          if (!(J[l] > 0)) inverted = std::min<Index>(inverted, s * lanes + l);
+        for (int k = 0; k < D * D; ++k) store(F + k * chunk + (s - first) * lanes, f[k]);
+        if (control_) control_->keep(s, f);
+      }
+      alignas(64) double P_of_chunk[D * D * chunk];
+      const int n = (last - first) * lanes;
+      groups_.template call<D * D>(c, P_of_chunk, [&](std::size_t m, double* P) {
+        materials_[m]->stress({n, chunk, F, P, nullptr});
+      });
+      for (Index s = first; s < last; ++s) {
+        const Index i = s * lanes;
+        const double* P = P_of_chunk + (s - first) * lanes;
+        const Pack Vi = load(V + i);
+        for (int d = 0; d < D; ++d)
+          for (int e = 0; e < D; ++e) {
+            Pack q = load(P + (d * D) * chunk) * load(M.c[e] + i);
+            for (int j = 1; j < D; ++j) q += load(P + (d * D + j) * chunk) * load(M.c[j * D + e] + i);
+            store(Q[d * D + e] + i, q * Vi);
+          }
+      }
+    }
+#pragma omp critical
+    extremes.merge(mine);
+  }
+  stretch_ = extremes.bounds();
+  if (inverted < p_.n && !this->failure_)
+    this->failure_ = Failure{p_.x.template vec<D>(inverted).allFinite() ? "J <= 0" : "not a number", inverted};
+}
+
+template <int D>
+template <class Real>
+void TlDisplacement<D>::force_pass(const Real* vectors) {
+  const Columns<D * D> Q(Q_);
+  const Columns<D> sum(op_.sum);
+  const double* m = p_.m.component(0);
+  double* a[D];
+  for (int d = 0; d < D; ++d) a[d] = p_.a.component(d);
+#pragma omp parallel for schedule(static)
+  for (Index s = 0; s < groups_.slices(); ++s) {
+    Pack force[D];
+    force_of_slice<D>(s, pairs_, vectors, Q, sum, force);
+    if (control_) control_->add_to(s, p_.x, force);
+    const Index i = s * lanes;
+    for (int d = 0; d < D; ++d) {
+      Pack ad = force[d] / load(m + i);
+      if (i + lanes > p_.n)
+        for (int l = p_.n - i; l < lanes; ++l) ad[l] = 0;
+      store(a[d] + i, ad);
+    }
+  }
+}
+
+template <int D>
+void TlDisplacement<D>::update_accelerations(double t) {
+  if (!p_.mirror.empty()) p_.mirror.positions(p_.x);
+  const bool single = op_.precision == PairPrecision::single_precision;
+  single ? gradient_pass(op_.vectors_f.data()) : gradient_pass(op_.vectors_d.data());
+  if (!p_.mirror.empty()) {
+    p_.mirror.tensors(Q_);
+    if (control_) p_.mirror.tensors(control_->deformation());
+  }
+  single ? force_pass(op_.vectors_f.data()) : force_pass(op_.vectors_d.data());
+  this->finish_accelerations(t);
+}
+
+template <int D>
+double TlDisplacement<D>::strain_energy() const {
+  std::vector<double> energy(static_cast<std::size_t>(groups_.chunks()), 0.0);
+#pragma omp parallel for schedule(static)
+  for (Index c = 0; c < groups_.chunks(); ++c) {
+    alignas(64) double F[D * D * chunk], P[D * D * chunk], e[chunk];
+    const Index first = groups_.first_slice(c), last = groups_.last_slice(c);
+    for (Index s = first; s < last; ++s) {
+      Pack f[D * D];
+      gradient(s, p_.x, f);
+      add_offset(s, f);
+      for (int k = 0; k < D * D; ++k) store(F + k * chunk + (s - first) * lanes, f[k]);
+    }
+    const int n = (last - first) * lanes;
+    groups_.template call<1>(c, e, [&](std::size_t m, double* out) { materials_[m]->stress({n, chunk, F, P, out}); });
+    for (Index i = first * lanes; i < std::min<Index>(last * lanes, p_.n); ++i)
+      energy[static_cast<std::size_t>(c)] += p_.V.component(0)[i] * e[i - first * lanes];
+  }
+  double total = 0;
+  for (const double e : energy) total += e;
+  return total;
+}
+
+// Highest frequency [rad/s] of the body at rest, by power iteration on M^-1 G^T (rho c_p^2) V G: an elastic body has no
+// mode above that of a scalar medium of its pressure-wave modulus, whatever the operator and the cloud.
+template <int D>
+double TlDisplacement<D>::largest_frequency() {
+  constexpr int iterations = 30;
+  Field y(static_cast<std::size_t>(p_.total), D);
+  for (Index i = 0; i < p_.n; ++i)
+    for (int d = 0; d < D; ++d) {
+      // Any start with a part in the highest mode will do; a multiplicative hash gives every frequency its share.
+      const auto hash = static_cast<std::uint32_t>(i * D + d + 1) * 2654435761u;
+      y.component(d)[i] = static_cast<double>(hash) / 4294967296.0 - 0.5;
+    }
+  std::vector<double> modulus;
+  for (const auto* m : materials_) modulus.push_back(m->density() * m->wave_speed() * m->wave_speed());
+
+  const Columns<D * D> M(op_.M), Q(Q_);
+  const Columns<D> sum(op_.sum), yc(y);
+  const bool single = op_.precision == PairPrecision::single_precision;
+  double eigenvalue = 0;
+  for (int it = 0; it < iterations; ++it) {
+    if (!p_.mirror.empty()) p_.mirror.vectors(y);
+#pragma omp parallel for schedule(static)
+    for (Index s = 0; s < groups_.slices(); ++s) {
+      Pack H[D * D];
+      gradient(s, y, H);
+      for (int l = 0; l < lanes; ++l) {
+        const Index i = std::min<Index>(s * lanes + l, p_.n - 1);
+        const double factor = p_.V.component(0)[i] * modulus[p_.material[static_cast<std::size_t>(i)]];
+        for (int d = 0; d < D; ++d)
+          for (int e = 0; e < D; ++e) {
+            double q = 0;
+            for (int j = 0; j < D; ++j) q += H[d * D + j][l] * M.c[j * D + e][i];
+            if (s * lanes + l < p_.n) Q_.component(d * D + e)[i] = factor * q;
+          }
+      }
+    }
+    if (!p_.mirror.empty()) p_.mirror.tensors(Q_);
+#pragma omp parallel for schedule(static)
+    for (Index s = 0; s < groups_.slices(); ++s) {
+      Pack force[D];
+      if (single)
+        force_of_slice<D>(s, pairs_, op_.vectors_f.data(), Q, sum, force);
+      else
+        force_of_slice<D>(s, pairs_, op_.vectors_d.data(), Q, sum, force);
+      for (int d = 0; d < D; ++d)
+        for (int l = 0; l < lanes && s * lanes + l < p_.n; ++l)
+          p_.a.component(d)[s * lanes + l] = force[d][l] / p_.m.component(0)[s * lanes + l];
+    }
+    double yy = 0, ya = 0, aa = 0;  // in the inner product of the masses
+    for (Index i = 0; i < p_.n; ++i)
+      for (int d = 0; d < D; ++d) {
+        const double m = p_.m.component(0)[i], yi = y.component(d)[i], ai = -p_.a.component(d)[i];
+        yy += m * yi * yi;
+        ya += m * yi * ai;
+        aa += m * ai * ai;
+      }
+    eigenvalue = yy > 0 && ya > 0 ? std::max(ya / yy, std::sqrt(aa / yy)) : eigenvalue;
+    const double scale = aa > 0 ? 1 / std::sqrt(aa) : 0;
+    for (int d = 0; d < D; ++d)
+      for (Index i = 0; i < p_.n; ++i) y.component(d)[i] = -p_.a.component(d)[i] * scale;
+  }
+  std::fill(p_.a.flat().begin(), p_.a.flat().end(), 0.0);
+  if (control_) eigenvalue += control_->largest_eigenvalue(pairs_);
+  return std::sqrt(eigenvalue);
+}
+
+}  // namespace
+
+template <int D>
+std::unique_ptr<Formulation<D>> make_tl_displacement(const FormulationSetup<D>& setup) {
+  return std::make_unique<TlDisplacement<D>>(setup);
+}
+template std::unique_ptr<Formulation<1>> make_tl_displacement<1>(const FormulationSetup<1>&);
+template std::unique_ptr<Formulation<2>> make_tl_displacement<2>(const FormulationSetup<2>&);
+template std::unique_ptr<Formulation<3>> make_tl_displacement<3>(const FormulationSetup<3>&);
+
+}  // namespace taut

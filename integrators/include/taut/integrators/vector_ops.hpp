@@ -1,0 +1,17 @@
+#pragma once
+/// \file
+/// Loops over flat arrays that every integrator needs. Sums are made in fixed blocks, so that they have the same
+/// bits for any number of threads.
+
+#include <span>
+
+namespace taut {
+
+/// y += factor * x
+void add_scaled(std::span<double> y, double factor, std::span<const double> x);
+/// v += kick * a, then x += drift * v, in one pass over memory.
+void kick_drift(std::span<double> x, std::span<double> v, std::span<const double> a, double kick, double drift);
+/// sum of weight * x * y
+double weighted_dot(std::span<const double> weight, std::span<const double> x, std::span<const double> y);
+
+}  // namespace taut

@@ -1,0 +1,49 @@
+#include <algorithm>
+#include <cstdint>
+#include <taut/integrators/vector_ops.hpp>
+#include <vector>
+
+namespace taut {
+
+namespace {
+constexpr std::int64_t block = 4096;
+constexpr std::int64_t parallel_from = 16 * block;
+std::int64_t blocks_of(std::size_t n) { return (static_cast<std::int64_t>(n) + block - 1) / block; }
+}  // namespace
+
+void add_scaled(std::span<double> y, double factor, std::span<const double> x) {
+  const auto n = static_cast<std::int64_t>(y.size());
+  double* ys = y.data();
+  const double* xs = x.data();
+#pragma omp parallel for simd schedule(static) if (n > parallel_from)
+  for (std::int64_t i = 0; i < n; ++i) ys[i] += factor * xs[i];
+}
+
+void kick_drift(std::span<double> x, std::span<double> v, std::span<const double> a, double kick, double drift) {
+  const auto n = static_cast<std::int64_t>(x.size());
+  double* xs = x.data();
+  double* vs = v.data();
+  const double* as = a.data();
+#pragma omp parallel for simd schedule(static) if (n > parallel_from)
+  for (std::int64_t i = 0; i < n; ++i) {
+    vs[i] += kick * as[i];
+    xs[i] += drift * vs[i];
+  }
+}
+
+double weighted_dot(std::span<const double> weight, std::span<const double> x, std::span<const double> y) {
+  const std::int64_t blocks = blocks_of(x.size());
+  std::vector<double> partial(static_cast<std::size_t>(blocks));
+#pragma omp parallel for schedule(static) if (blocks > 16)
+  for (std::int64_t b = 0; b < blocks; ++b) {
+    const std::size_t end = std::min(x.size(), static_cast<std::size_t>((b + 1) * block));
+    double sum = 0;
+    for (std::size_t i = static_cast<std::size_t>(b * block); i < end; ++i) sum += weight[i] * x[i] * y[i];
+    partial[static_cast<std::size_t>(b)] = sum;
+  }
+  double sum = 0;
+  for (const double p : partial) sum += p;
+  return sum;
+}
+
+}  // namespace taut
