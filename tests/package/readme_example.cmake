@@ -1,0 +1,11 @@
+# Writes the C++ block of README.md to a file: cmake -DREADME=… -DOUT=… -P readme_example.cmake
+file(READ ${README} text)
+string(FIND "${text}" "```cpp\n" begin)
+if(begin EQUAL -1)
+  message(FATAL_ERROR "README.md has no ```cpp block")
+endif()
+math(EXPR begin "${begin} + 7")
+string(SUBSTRING "${text}" ${begin} -1 rest)
+string(FIND "${rest}" "```" end)
+string(SUBSTRING "${rest}" 0 ${end} code)
+file(WRITE ${OUT} "${code}")
