@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Smoothing kernels (methods: Lucy 1977, Monaghan 1992, Wendland 1995, Cabezon et al. 2008 and others).
+/// Smoothing kernels.
 
 #include <string>
 #include <string_view>
@@ -8,23 +8,36 @@
 
 namespace taut {
 
-/// A radial kernel W(r, h) normalised in `dimension` dimensions, zero from r = radius_factor() * h on.
+/// A radial kernel W(r, h) = constant() h^-D shape(r / h), normalised in D = `dimension` dimensions and
+/// exactly zero from r = radius_factor() h on. Names:
+///  - `lucy` (Lucy 1977), `cubic_spline` (Monaghan and Lattanzio 1985), `quadratic` (Johnson, Stryk and
+///  Beissel 1996),
+///    `wendland_c2` (Wendland 1995), `sinc5` (the fifth power of a sinc: Cabezon, Garcia-Senz and Relano
+///    2008);
+///  - `gaussian` (Gingold and Monaghan 1977), cut off at 3 h, where it still has 1.2e-4 of its centre value,
+///  and
+///    normalised on what is left;
+///  - `mollifier`, exp(-1 / (1 - q^2)), and `modified_mollifier`, the same times (1 - q^2)^8, which comes
+///  close to a
+///    Gaussian.
+/// Cheap to make and to copy: the constants are computed once for all.
 class Kernel {
  public:
-  /// \throws InputError listing the valid names.
+  /// \throws InputError for an unknown name, listing the valid ones, or a dimension that is not 1, 2 or 3.
   Kernel(std::string_view name, int dimension);
 
   std::string_view name() const;
   int dimension() const { return dimension_; }
   /// Support radius over smoothing length (kappa).
   double radius_factor() const;
-  /// W [1/m^D] at distance r [m] for smoothing length h [m].
+  /// W [1/m^D] at distance r >= 0 [m] for smoothing length h > 0 [m].
   double value(double r, double h) const;
-  /// dW/dr [1/m^(D+1)].
+  /// dW/dr [1/m^(D+1)]; at r = 0 the limit from r > 0, which is zero for every kernel but `quadratic`.
   double derivative(double r, double h) const;
   /// The constant in W = constant h^-D shape(r/h).
   double constant() const { return constant_; }
 
+  /// The valid names, in the order in which tables and charts list them.
   static std::vector<std::string> names();
 
  private:
