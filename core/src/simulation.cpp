@@ -345,6 +345,14 @@ RunResult Simulation<D>::relax(const RelaxOptions& options) {
   RunResult result;
   result.status = Status::not_converged;
   s.start();
+  const auto undamped = make_integrator("leapfrog");
+  while (s.time - start < options.free_time && result.steps < options.max_steps && !s.broke(result, result.steps)) {
+    const double dt = s.next_step(options.cfl, 0);
+    undamped->step(*s.formulation, s.time, dt);
+    s.time += dt;
+    if (++result.steps % inspect_every == 0) s.formulation->inspect();
+    if (options.progress && result.steps % inspect_every == 0 && !options.progress(result.steps, s.time, 0)) break;
+  }
   Relaxation relaxation(*s.formulation);
   double largest = 0;
   // A passing coincidence of small forces is no equilibrium: they must stay small.

@@ -52,6 +52,7 @@ struct RunOptions {
 struct RelaxOptions {
   double tolerance = 1e-6;       ///< wanted |out-of-balance force| / |applied force|
   double ramp_time = 0;          ///< loads grow smoothly from zero over this time [s]; 0: full at once
+  double free_time = 0;          ///< motion without damping for this time [s] first: what sudden loads do to a body
   std::int64_t max_steps = 10'000'000;
   double cfl = 0.6;
   Progress progress;

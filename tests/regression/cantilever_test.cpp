@@ -1,0 +1,44 @@
+// Cantilever under a transverse dead load (Tran-Duc et al. 2023, 3.1): truth by total Lagrangian Q2 finite elements, 60 x 6, St.
+// Venant-Kirchhoff, plane stress; tip displacement in mm (bench/reference/cantilever.csv).
+#include "bodies.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+using namespace taut;
+
+TEST_CASE("cantilever: the tip error of corrected operators falls with the spacing") {
+  double last = 1;
+  // 0.5 mm (0.4 %) takes half a minute: taut-compare runs it.
+  for (const auto& [dx, bound] : {std::pair{2e-3, 0.025}, std::pair{1e-3, 0.009}}) {
+    CAPTURE(dx);
+    const auto outcome = solve({.body = Body::cantilever, .load = -250, .dx = dx});
+    CHECK(outcome.result.status == Status::ok);
+    const double error = std::abs(1e3 * outcome.tip.y() / -47.4404 - 1);
+    CHECK(error < bound);
+    CHECK(error < last);
+    last = error;
+    CHECK(1e3 * outcome.tip.x() == doctest::Approx(-6.8844).epsilon(2 * bound));
+  }
+}
+
+TEST_CASE("cantilever: ul_basic holds a small sudden load and breaks under larger ones") {
+  const auto drop = [](double load) {
+    return solve({.body = Body::cantilever,
+                  .load = load,
+                  .material = "hypoelastic",
+                  .lattice = Lattice::cell_centred,
+                  .method = updated_lagrangian("ul_basic"),
+                  .solve = {.free_time = 0.1, .max_steps = 12000}});
+  };
+  CHECK(drop(-25).result.status != Status::broke);
+  for (const double load : {-50.0, -75.0, -150.0, -250.0}) {
+    CAPTURE(load);
+    const auto outcome = drop(load);
+    REQUIRE(outcome.result.status == Status::broke);
+    // The tension side tears at the clamp.
+    CHECK(outcome.result.breakdown->X[0] < 0.06);
+    CHECK(outcome.result.breakdown->X[1] > 0.01);
+  }
+}
