@@ -27,7 +27,7 @@ void Loads<D>::add_to(double t, const Field& mass, Field& a) const {
     for (int d = 0; d < D; ++d) {
       double* ad = a.component(d);
       const double g = f * load.acceleration[d];
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (load.n > 65536)
       for (Index i = 0; i < load.n; ++i) ad[i] += g;
     }
   }

@@ -131,7 +131,7 @@ void TlDisplacement<D>::gradient_pass(const Real* vectors) {
   for (int c = 0; c < D * D; ++c) Q[c] = Q_.component(c);
   Index inverted = p_.n;
   StretchExtremes<D> extremes;
-#pragma omp parallel
+#pragma omp parallel if (p_.n > parallel_from)
   {
     StretchExtremes<D> mine;
 #pragma omp for schedule(static) reduction(min : inverted)
@@ -184,7 +184,7 @@ void TlDisplacement<D>::force_pass(const Real* vectors) {
   const double* m = p_.m.component(0);
   double* a[D];
   for (int d = 0; d < D; ++d) a[d] = p_.a.component(d);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (p_.n > parallel_from)
   for (Index s = 0; s < groups_.slices(); ++s) {
     Pack force[D];
     force_of_slice<D>(s, pairs_, vectors, Q, sum, force);
@@ -215,7 +215,7 @@ void TlDisplacement<D>::update_accelerations(double t) {
 template <int D>
 double TlDisplacement<D>::strain_energy() const {
   std::vector<double> energy(static_cast<std::size_t>(groups_.chunks()), 0.0);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (p_.n > parallel_from)
   for (Index c = 0; c < groups_.chunks(); ++c) {
     alignas(64) double F[D * D * chunk], P[D * D * chunk], e[chunk];
     const Index first = groups_.first_slice(c), last = groups_.last_slice(c);
@@ -256,7 +256,7 @@ double TlDisplacement<D>::largest_frequency() {
   double eigenvalue = 0;
   for (int it = 0; it < iterations; ++it) {
     if (!p_.mirror.empty()) p_.mirror.vectors(y);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (p_.n > parallel_from)
     for (Index s = 0; s < groups_.slices(); ++s) {
       Pack H[D * D];
       gradient(s, y, H);
@@ -272,7 +272,7 @@ double TlDisplacement<D>::largest_frequency() {
       }
     }
     if (!p_.mirror.empty()) p_.mirror.tensors(Q_);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (p_.n > parallel_from)
     for (Index s = 0; s < groups_.slices(); ++s) {
       Pack force[D];
       if (single)

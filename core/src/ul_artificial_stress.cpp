@@ -69,7 +69,7 @@ class UlArtificialStress final : public UpdatedLagrangian<D> {
 template <int D>
 void UlArtificialStress<D>::update_artificial_stress() {
   const double epsilon = this->method_.artificial_stress;
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (p_.n > parallel_from)
   for (Index i = 0; i < p_.n; ++i) {
     Mat<D> T;
     for (int c = 0; c < S; ++c) {

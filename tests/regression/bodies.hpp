@@ -14,8 +14,8 @@ struct Case {
   double dx = 2e-3;
   const char* material = "st_venant_kirchhoff";
   Lattice lattice = Lattice::node_centred;
-  Method method;
-  RelaxOptions solve;
+  Method method{};
+  RelaxOptions solve{};
 };
 
 struct Outcome {

@@ -46,7 +46,7 @@ struct RunOptions {
   std::string integrator = "leapfrog";  ///< "leapfrog" or "central_difference"
   double cfl = 0.6;                     ///< fraction of the CFL step
   double max_step = 0;                  ///< upper bound of the step [s]; 0 = none
-  Progress progress;
+  Progress progress{};
 };
 
 struct RelaxOptions {
@@ -55,7 +55,7 @@ struct RelaxOptions {
   double free_time = 0;          ///< motion without damping for this time [s] first: what sudden loads do to a body
   std::int64_t max_steps = 10'000'000;
   double cfl = 0.6;
-  Progress progress;
+  Progress progress{};
 };
 
 /// Which particles: a predicate of the reference position.

@@ -14,6 +14,9 @@ namespace taut {
 inline constexpr int chunk_slices = 8;
 inline constexpr int chunk_particles = chunk_slices * lanes;
 
+/// Fewer particles than this are not worth waking the other threads for.
+inline constexpr Index parallel_from = 4096;
+
 /// Chunks of consecutive particles with the material they are of, or `mixed`.
 class MaterialGroups {
  public:

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <taut/core/error.hpp>
 #include <taut/core/formulation.hpp>
 #include <taut/core/kernel.hpp>
@@ -75,6 +76,8 @@ class UpdatedLagrangian : public Formulation<D> {
     view.n = p_.total;
     return view;
   }
+  /// Brings the pair list up to date; false, with `failure` set, where the particles are in no state to have one.
+  bool update_list();
   /// T = sigma / rho^2 of all particles, mirror images included.
   void update_stress();
   /// dv/dt. `term.add(i, r2, at, T)` adds to the symmetric components T = T_a + T_b of the pairs of particles i ... i + 7
@@ -145,6 +148,34 @@ UpdatedLagrangian<D>::UpdatedLagrangian(const FormulationSetup<D>& setup)
 }
 
 template <int D>
+bool UpdatedLagrangian<D>::update_list() {
+  if (this->failure_) return false;
+  for (Index i = 0; i < p_.n; ++i)
+    if (!p_.x.template vec<D>(i).allFinite()) {
+      this->failure_ = Failure{"not a number", i};
+      return false;
+    }
+  try {
+    list_.update(points());
+    return true;
+  } catch (const InputError&) {
+    // Finite points that have no pair list coincide: report the pair of the last list that came closest.
+    Failure closest{"coincident particles", 0};
+    double least = std::numeric_limits<double>::max();
+    for (Index a = 0; a < p_.n; ++a)
+      list_.pairs().for_each(a, [&](Index b, std::int64_t, int) {
+        const double r2 = (p_.x.template vec<D>(a) - p_.x.template vec<D>(b)).squaredNorm();
+        if (r2 < least) {
+          least = r2;
+          closest.particle = a;
+        }
+      });
+    this->failure_ = closest;
+    return false;
+  }
+}
+
+template <int D>
 void UpdatedLagrangian<D>::inspect() {
   Base::inspect();
   if (this->failure_) return;
@@ -184,10 +215,10 @@ void UpdatedLagrangian<D>::update_rates(double) {
     p_.mirror.positions(p_.x);
     p_.mirror.vectors(p_.v);
   }
-  list_.update(points());
+  if (!update_list()) return;
   const bool corrected = this->method_.velocity_gradient == "corrected";
   const double* m = p_.m.component(0);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (p_.n > parallel_from)
   for (Index c = 0; c < groups_.chunks(); ++c) {
     alignas(64) double L[D * D * chunk], trace[chunk];
     const Index first = groups_.first_slice(c), last = groups_.last_slice(c);
@@ -263,7 +294,7 @@ void UpdatedLagrangian<D>::update_rates(double) {
 template <int D>
 void UpdatedLagrangian<D>::update_stress() {
   Index broken = p_.n;
-#pragma omp parallel for schedule(static) reduction(min : broken)
+#pragma omp parallel for schedule(static) reduction(min : broken) if (p_.n > parallel_from)
   for (Index c = 0; c < groups_.chunks(); ++c) {
     const int n = (groups_.last_slice(c) - groups_.first_slice(c)) * lanes;
     const Index begin = groups_.first(c);
@@ -303,7 +334,7 @@ void UpdatedLagrangian<D>::acceleration_pass(const Term& term) {
   const double* rho = rho_.component(0);
   double speed = 0;
   for (const auto& material : p_.materials) speed = std::max(speed, material->wave_speed());
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (p_.n > parallel_from)
   for (Index s = 0; s < groups_.slices(); ++s) {
     const Index i = s * lanes;
     Pack xi[D], vi[D], Ti[S], a[D];
