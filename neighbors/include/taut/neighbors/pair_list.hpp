@@ -8,15 +8,15 @@
 
 namespace taut {
 
-/// Directed pairs (a, b), b within the support of a, in slices of `lanes` consecutive particles (the layout of
-/// SELL-C-sigma sparse matrices: Kreutzer et al., SIAM J. Sci. Comput. 36, 2014). A slice owns a range of slots;
-/// a slot holds at most one neighbour for each of the slice's particles. Slots come in two kinds, the contiguous
-/// ones of a slice first:
+/// Directed pairs (a, b), b within the support of a, in slices of `lanes` consecutive particles (the layout
+/// of SELL-C-sigma sparse matrices: Kreutzer et al., SIAM J. Sci. Comput. 36, 2014). A slice owns a range of
+/// slots; a slot holds at most one neighbour for each of the slice's particles. Slots come in two kinds, the
+/// contiguous ones of a slice first:
 ///  - contiguous: lane l pairs with particle `first + l`, so a field is loaded, not gathered;
 ///  - gathered: lane l pairs with its own entry of an index block.
-/// A lane without a pair in a slot has its bit of `mask` unset; its index is then still a valid particle (padding
-/// included), and payloads are zero there, so that loops need no branch.
-/// The order of the slots depends on the points alone, never on the number of threads.
+/// A lane without a pair in a slot has its bit of `mask` unset; its index is then still a valid particle
+/// (padding included), and payloads are zero there, so that loops need no branch. The order of the slots
+/// depends on the points alone, never on the number of threads.
 class PairList {
  public:
   Index particles() const { return particles_; }
@@ -28,11 +28,13 @@ class PairList {
   /// Slots of slice s: [begin(s), begin(s + 1)); those before `gathered(s)` are contiguous.
   std::int64_t begin(Index s) const { return slice_begin_[s]; }
   std::int64_t gathered(Index s) const { return slice_gathered_[s]; }
-  /// Contiguous slot: the neighbour of lane 0; lane l pairs with first(k) + l, always within the padded arrays.
-  /// Gathered slot: the number of its index block.
+  /// Contiguous slot: the neighbour of lane 0; lane l pairs with first(k) + l, always within the padded
+  /// arrays. Gathered slot: the number of its index block.
   Index first(std::int64_t k) const { return first_[k]; }
   /// The eight neighbour indices of a gathered slot.
-  const Index* block(std::int64_t k) const { return index_.data() + static_cast<std::int64_t>(first_[k]) * lanes; }
+  const Index* block(std::int64_t k) const {
+    return index_.data() + static_cast<std::int64_t>(first_[k]) * lanes;
+  }
   /// Bit l is set where lane l has a pair in slot k.
   std::uint8_t mask(std::int64_t k) const { return mask_[k]; }
   bool is_contiguous(Index s, std::int64_t k) const { return k < gathered(s); }
@@ -49,6 +51,10 @@ class PairList {
       f(k < gathered(s) ? first_[k] + lane : block(k)[lane], k, lane);
     }
   }
+
+  /// The slot that holds the pair (a, b), or -1: where payload of the reverse of a pair is kept. Scans the
+  /// slots of a.
+  std::int64_t find(Index a, Index b) const;
 
   std::size_t bytes() const {
     return slice_begin_.bytes() + slice_gathered_.bytes() + first_.bytes() + mask_.bytes() + index_.bytes();

@@ -25,19 +25,26 @@ struct SearchOptions {
   SearchMethod method = SearchMethod::cell_list;
 };
 
-/// All pairs closer than `radius` (strictly).
-/// \throws InputError for a non-finite point (named), a radius that is not positive, coincident points (both
-/// named), or more pairs than the index type addresses.
+/// All pairs closer than `radius` [m]: those with (dx² + dy²) + dz² < radius², each operation rounded to
+/// double in this order. That is symmetric to the last bit and the same for both methods, whose lists are
+/// identical. Memory is O(points + pairs) whatever the extent of the points; any finite coordinates will do.
+/// \throws InputError for a coordinate that is not finite (particle named), a radius that is not positive and
+/// finite, coincident particles (nearer than 1e-12 radii; both named), or a list of more slots than an Index
+/// counts.
 template <int D>
 PairList find_pairs(PointView<D> points, double radius, SearchOptions options = {});
 
-/// With a radius for each particle: a and b are a pair when their distance is less than the larger of their radii,
-/// so that lists stay symmetric (b in N(a) exactly when a in N(b)).
+/// With a radius for each particle: a and b are a pair when their distance is less than the larger of their
+/// radii, so that lists stay symmetric (b in N(a) exactly when a in N(b)). Coincident is nearer than 1e-12 of
+/// the smaller one. \throws InputError as above, naming the particle whose radius is bad, and for a wrong
+/// number of radii.
 template <int D>
 PairList find_pairs(PointView<D> points, std::span<const double> radii, SearchOptions options = {});
 
-/// New order for locality: `order[new] = old`. Lattices (points on few distinct coordinates) are kept in
-/// lexicographic order, last coordinate slowest; other clouds follow a space-filling curve of cells of size `cell`.
+/// New order for locality: `order[new] = old`. Lattices (points on few distinct coordinates, rounding aside)
+/// are put in lexicographic order, last coordinate slowest; other clouds follow a Hilbert curve of cells of
+/// size `cell` [m], and within a cell the coordinates, last slowest. Depends on the positions alone. \throws
+/// InputError for a coordinate that is not finite, a cell size that is not positive and finite.
 template <int D>
 std::vector<Index> locality_order(PointView<D> points, double cell);
 

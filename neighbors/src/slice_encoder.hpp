@@ -1,0 +1,61 @@
+#pragma once
+// From the lane masks of a slice to what its slots will hold.
+
+#include <cstdint>
+#include <vector>
+
+#include "lane_masks.hpp"
+
+namespace taut::detail {
+
+// Consecutive slices in compressed form. A slice's entries: first its contiguous slots (the neighbour of lane
+// 0 and the mask), then the particles to be gathered, ascending, each with the mask of the lanes that pair
+// with it.
+struct EncodedSlices {
+  struct Slice {
+    std::int64_t contiguous = 0;  // entries that are contiguous slots
+    std::int64_t loose = 0;       // entries to be gathered
+    std::int64_t gathered = 0;    // slots that these fill: the most any lane has
+  };
+  std::vector<Slice> slices;
+  std::vector<Index> id;
+  std::vector<std::uint8_t> mask;
+  std::int64_t pairs = 0, slots = 0, blocks = 0;  // sums: directed pairs, slots, gathered slots
+};
+
+class SliceEncoder {
+ public:
+  explicit SliceEncoder(Index particles)
+      : padded_(static_cast<std::int64_t>(padded(static_cast<std::size_t>(particles)))) {}
+
+  // Appends the next slice and clears the masks.
+  void encode(LaneMasks& masks);
+  // All since the last take.
+  EncodedSlices take();
+  std::int64_t slots() const { return sums_.slots; }
+
+ private:
+  struct Entries {
+    std::vector<Index> id;
+    std::vector<std::uint8_t> mask;
+    std::size_t count = 0;
+    void reserve(std::size_t more) {
+      if (id.size() < count + more) {
+        id.resize(2 * (count + more));
+        mask.resize(id.size());
+      }
+    }
+    void put(std::int64_t i, std::uint64_t m, bool keep) {
+      id[count] = static_cast<Index>(i);
+      mask[count] = static_cast<std::uint8_t>(m);
+      count += keep;
+    }
+  };
+  void encode_run(LaneMasks& masks, std::int64_t begin, std::int64_t end);
+
+  std::int64_t padded_;
+  Entries entries_, loose_;
+  EncodedSlices sums_;
+};
+
+}  // namespace taut::detail
