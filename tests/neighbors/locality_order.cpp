@@ -1,3 +1,5 @@
+#include <omp.h>
+
 #include "clouds.hpp"
 
 using namespace clouds;
@@ -104,6 +106,16 @@ TEST_CASE("the order depends on where points are, not on how they came") {
   const auto p = random_cloud<3>(1000);
   const auto mixed = p.reordered(shuffled<3>(1000));
   CHECK(p.reordered(locality_order(p.view(), 0.2)).x == mixed.reordered(locality_order(mixed.view(), 0.2)).x);
+}
+
+TEST_CASE("the order is the same for any number of threads") {
+  const int threads = omp_get_max_threads();
+  const auto p = random_cloud<3>(9000);
+  omp_set_num_threads(1);
+  const auto one = locality_order(p.view(), 0.05);
+  omp_set_num_threads(3);
+  CHECK(locality_order(p.view(), 0.05) == one);
+  omp_set_num_threads(threads);
 }
 
 TEST_CASE("a diagonal line of more cells than the key has bits for") {
