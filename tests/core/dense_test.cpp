@@ -81,7 +81,7 @@ struct Dense {
 
 // Largest difference over the largest displacement, dense against engine, for a smooth bump of initial displacement.
 double difference(bool held_rim, Form form) {
-  constexpr double dx = 0.025, amplitude = 2e-3, support = 2.6;
+  constexpr double dx = 0.025, amplitude = 1e-2, support = 2.6;
   constexpr int steps = 60;
   const auto cloud = make_cloud(box<2>({0, 0}, {1, 0.8}), {.dx = dx, .lattice = Lattice::cell_centred});
   const MaterialParameters parameters{.E = 200e9, .nu = 0.3, .density = 8000};

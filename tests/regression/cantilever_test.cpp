@@ -38,7 +38,7 @@ TEST_CASE("cantilever: ul_basic holds a small sudden load and breaks under large
     const auto outcome = drop(load);
     REQUIRE(outcome.result.status == Status::broke);
     // The tension side tears at the clamp.
-    CHECK(outcome.result.breakdown->X[0] < 0.06);
+    CHECK(outcome.result.breakdown->X[0] < 0.1);
     CHECK(outcome.result.breakdown->X[1] > 0.01);
   }
 }

@@ -179,12 +179,14 @@ template <int D>
 void UpdatedLagrangian<D>::inspect() {
   Base::inspect();
   if (this->failure_) return;
-  const double reach = table_.support();
-  for (const auto& [a, b] : nearest_)
-    if ((p_.x.template vec<D>(a) - p_.x.template vec<D>(b)).squaredNorm() > reach * reach) {
-      this->failure_ = Failure{"lost neighbours", a};
-      return;
-    }
+  // The widest gap is where the body tears.
+  double widest = table_.support() * table_.support();
+  for (const auto& [a, b] : nearest_) {
+    const double r2 = (p_.x.template vec<D>(a) - p_.x.template vec<D>(b)).squaredNorm();
+    if (r2 <= widest) continue;
+    widest = r2;
+    this->failure_ = Failure{"lost neighbours", a};
+  }
 }
 
 /// Inverse of eight D×D matrices (row-major).
