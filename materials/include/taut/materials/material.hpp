@@ -3,6 +3,7 @@
 /// What a material is to the rest of taut: deformation in, stress out, a block of particles at a time.
 
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -14,21 +15,21 @@ namespace taut {
 /// How a 2D body treats the third direction. Ignored in 3D; 1D is always uniaxial strain.
 enum class Plane { strain, stress };
 
-/// Elastic constants of a material. SI units.
+/// Elastic constants of an isotropic material. SI units.
 struct MaterialParameters {
   double E = 0;        ///< Young's modulus [Pa], > 0
   double nu = 0;       ///< Poisson's ratio, -1 < nu < 0.5
   double density = 0;  ///< reference density [kg/m^3], > 0
   Plane plane = Plane::strain;
 
-  double mu() const { return E / (2 * (1 + nu)); }
-  double lambda() const { return E * nu / ((1 + nu) * (1 - 2 * nu)); }
-  double bulk() const { return E / (3 * (1 - 2 * nu)); }
+  double mu() const { return E / (2 * (1 + nu)); }                      ///< shear modulus [Pa]
+  double lambda() const { return E * nu / ((1 + nu) * (1 - 2 * nu)); }  ///< first Lamé constant [Pa]
+  double bulk() const { return E / (3 * (1 - 2 * nu)); }                ///< bulk modulus K [Pa]
 };
 
-/// Deformation gradients and first Piola–Kirchhoff stresses of `n` particles, structure of arrays: component (i, j),
-/// row-major, of particle p stands at [(i * D + j) * stride + p]. `n` is a multiple of `lanes`; arrays may alias
-/// (P == F).
+/// Deformation gradients and first Piola–Kirchhoff stresses of `n` particles, structure of arrays: component
+/// (i, j), row-major, of particle p stands at [(i * D + j) * stride + p]. `n` is a multiple of `lanes`;
+/// arrays may alias (P == F).
 template <int D>
 struct StressBlock {
   int n = 0;
@@ -46,14 +47,21 @@ class Material {
   virtual std::string_view name() const = 0;
   const MaterialParameters& parameters() const { return parameters_; }
   double density() const { return parameters_.density; }
-  /// Pressure-wave speed of the undeformed body [m/s], for the time step; that of the plate in plane stress.
+  /// Pressure-wave speed of the undeformed body [m/s], for the time step: sqrt((lambda + 2 mu) / rho0), or
+  /// that of the plate, sqrt(E / (rho0 (1 - nu²))), in plane stress.
   double wave_speed() const;
-  /// Upper bound of the wave speed, measured in reference lengths, where the principal stretches of the in-plane F lie
-  /// in [stretch_min, stretch_max].
-  virtual double wave_speed(double stretch_min, double stretch_max) const;
+  /// Upper bound of the speed of plane waves [m/s], measured in reference lengths, over all states whose
+  /// principal stretches (those of the in-plane F in 2D) lie in [stretch_min, stretch_max] and whose
+  /// (in-plane) det F lies in [J_min, J_max]: the root of the largest eigenvalue, by magnitude, of the
+  /// acoustic tensor A_ik = N_J N_L dP_iJ/dF_kL / rho0 over all directions N. Equals wave_speed() for the
+  /// stretches 1, 1. The range of J only tightens it, and matters most for nearly incompressible materials at
+  /// large stretch. Infinite for stretch_min <= 0 where the law has no bound there.
+  virtual double wave_speed(double stretch_min, double stretch_max, double J_min = 0,
+                            double J_max = std::numeric_limits<double>::infinity()) const = 0;
 
  protected:
-  explicit Material(const MaterialParameters& parameters);  ///< \throws InputError for parameters out of range
+  /// \throws InputError for parameters out of range.
+  explicit Material(const MaterialParameters& parameters);
   MaterialParameters parameters_;
 };
 
@@ -62,13 +70,17 @@ template <int D>
 class Hyperelastic : public Material<D> {
  public:
   using Material<D>::Material;
-  /// P (and energy where asked for) of a block.
+  /// Whether the stress is the derivative of a stored energy. Ask before asking for energies.
+  virtual bool has_energy() const { return true; }
+  /// P (and energy where asked for) of a block. A state outside the law's domain (det F <= 0 where the law
+  /// has a logarithm or a rotation in it) gives NaN.
+  /// \throws InputError if energy is asked for of a law that has none.
   virtual void stress(const StressBlock<D>& block) const = 0;
 };
 
 /// Number of stored components of a symmetric tensor: D = 1: xx; 2: xx, yy, xy; 3: xx, yy, zz, yz, xz, xy.
 template <int D>
-inline constexpr int sym_components = D == 1 ? 1 : D == 2 ? 3 : 6;
+inline constexpr int sym_components = D*(D + 1) / 2;
 
 /// A block of a rate-form material. All arrays hold component c of particle p at [c * stride + p].
 template <int D>
@@ -83,19 +95,37 @@ struct RateBlock {
   double* sigma = nullptr;      ///< out of `stress`: Cauchy stress, symmetric components
 };
 
-/// Stress follows from its rate: hypoelastic laws for the updated Lagrangian forms. The out-of-plane deviatoric component is
-/// minus the sum of the in-plane ones.
+/// Stress follows from its rate: hypoelastic laws for the updated Lagrangian forms. The out-of-plane
+/// deviatoric component is minus the sum of the in-plane ones; in 1D each lateral one is -s_xx / 2.
+///
+/// In plane stress the density of this law is the three-dimensional one, while the sums of a 2D formulation
+/// run over the density per area, rho_A, whose rate is -rho_A tr(L). The thickness over the reference one is
+/// rho_A / rho; forces follow from sigma times that.
 template <int D>
 class Hypoelastic : public Material<D> {
  public:
   using Material<D>::Material;
+  /// s_rate and rho_rate from L, s and rho.
   virtual void rate(const RateBlock<D>& block) const = 0;
+  /// sigma from s and rho.
   virtual void stress(const RateBlock<D>& block) const = 0;
 };
 
-/// A material by its name. \throws InputError listing the valid names, or for parameters the model does not take.
+/// A material by its name:
+/// - `linear_elastic`: small strain, P = sigma(eps), eps = sym(F) - I. Not objective: rotation makes stress.
+/// - `st_venant_kirchhoff`: P = F S, S = lambda tr(E) I + 2 mu E, E = (F^T F - I) / 2.
+/// - `corotated_svk`: P = R S, R the rotation of F = R U: objective, not the derivative of an energy.
+/// - `neo_hookean`: P = mu (F - F^-T) + lambda ln J F^-T (Bonet and Wood 1997, section 5.4.3).
+/// - `hypoelastic`: Jaumann rate of the deviatoric stress, p = K (rho / rho0 - 1).
+///
+/// The last is a `Hypoelastic`, the others are `Hyperelastic`. 1D is uniaxial strain. Plane stress: S_33 = 0
+/// for the St. Venant–Kirchhoff laws; P_33 = 0 solved to round-off for neo_hookean (NaN where nu < 0 and a
+/// strong compression has no such state); a zero rate of sigma_33 for hypoelastic.
+///
+/// \throws InputError listing the valid names, or for parameters out of range.
 template <int D>
 std::unique_ptr<Material<D>> make_material(std::string_view name, const MaterialParameters& parameters);
+/// The names `make_material` knows.
 std::vector<std::string> material_names();
 
 }  // namespace taut
