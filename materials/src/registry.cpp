@@ -26,7 +26,7 @@ std::vector<std::string> material_names() {
 }
 
 template <int D>
-std::unique_ptr<Material<D>> make_material(std::string_view name, const MaterialParameters& parameters) {
+std::shared_ptr<const Material<D>> make_material(std::string_view name, const MaterialParameters& parameters) {
   struct Entry {
     std::string_view name;
     std::unique_ptr<Material<D>> (*make)(const MaterialParameters&);
@@ -42,11 +42,11 @@ std::unique_ptr<Material<D>> make_material(std::string_view name, const Material
       throw InputError(fmt::format("material '{}': {}", name, error.what()));
     }
   }
-  throw InputError(fmt::format("no material '{}'; valid names: {}", name, fmt::join(material_names(), ", ")));
+  throw InputError(fmt::format("no material '{}'; valid names: {}", name, join_names(material_names())));
 }
 
-template std::unique_ptr<Material<1>> make_material<1>(std::string_view, const MaterialParameters&);
-template std::unique_ptr<Material<2>> make_material<2>(std::string_view, const MaterialParameters&);
-template std::unique_ptr<Material<3>> make_material<3>(std::string_view, const MaterialParameters&);
+template std::shared_ptr<const Material<1>> make_material<1>(std::string_view, const MaterialParameters&);
+template std::shared_ptr<const Material<2>> make_material<2>(std::string_view, const MaterialParameters&);
+template std::shared_ptr<const Material<3>> make_material<3>(std::string_view, const MaterialParameters&);
 
 }  // namespace taut

@@ -88,7 +88,7 @@ class Particle {
     RateBlock<D> block;
   };
   const Hypoelastic<D>& law() const { return dynamic_cast<const Hypoelastic<D>&>(*material_); }
-  std::unique_ptr<Material<D>> material_;
+  std::shared_ptr<const Material<D>> material_;
 };
 
 MaterialParameters parameters(double nu, Plane plane = Plane::strain) { return {3.0, nu, 2.0, plane}; }

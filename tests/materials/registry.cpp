@@ -31,8 +31,8 @@ TEST_CASE("every name makes a material of that name, in every dimension") {
     CHECK(material->name() == name);
     CHECK(material->density() == 7800);
     CHECK(material->parameters().E == 210e9);
-    CHECK((dynamic_cast<Hypoelastic<3>*>(material.get()) != nullptr) == (name == "hypoelastic"));
-    CHECK((dynamic_cast<Hyperelastic<3>*>(material.get()) != nullptr) == (name != "hypoelastic"));
+    CHECK((dynamic_cast<const Hypoelastic<3>*>(material.get()) != nullptr) == (name == "hypoelastic"));
+    CHECK((dynamic_cast<const Hyperelastic<3>*>(material.get()) != nullptr) == (name != "hypoelastic"));
   }
 }
 

@@ -76,12 +76,8 @@ struct Evaluation {
 };
 
 template <int D>
-std::unique_ptr<Hyperelastic<D>> hyperelastic(std::string_view name, const MaterialParameters& parameters) {
-  auto material = make_material<D>(name, parameters);
-  auto* h = dynamic_cast<Hyperelastic<D>*>(material.get());
-  if (!h) return nullptr;
-  material.release();
-  return std::unique_ptr<Hyperelastic<D>>(h);
+std::shared_ptr<const Hyperelastic<D>> hyperelastic(std::string_view name, const MaterialParameters& parameters) {
+  return std::dynamic_pointer_cast<const Hyperelastic<D>>(make_material<D>(name, parameters));
 }
 
 /// P (and the energy, for laws that have one) at F.

@@ -124,7 +124,7 @@ class Hypoelastic : public Material<D> {
 ///
 /// \throws InputError listing the valid names, or for parameters out of range.
 template <int D>
-std::unique_ptr<Material<D>> make_material(std::string_view name, const MaterialParameters& parameters);
+std::shared_ptr<const Material<D>> make_material(std::string_view name, const MaterialParameters& parameters);
 /// The names `make_material` knows.
 std::vector<std::string> material_names();
 
