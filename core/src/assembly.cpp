@@ -75,7 +75,11 @@ Particles<D> assemble(const Cloud<D>& cloud, std::vector<std::shared_ptr<const M
     p.material[i] = material[id];
     p.m.component(0)[i] = V * p.materials[material[id]]->density();
     for (int d = 0; d < D; ++d) p.m_flat.component(d)[i] = p.m.component(0)[i];
-    if (!cloud.B.empty()) p.B[i] = cloud.B[id];
+    if (cloud.B.empty()) continue;
+    // A plane is no boundary: across it the body goes on, and what lies on the plane counts both sides.
+    p.B[i] = cloud.B[id] * times[id];
+    for (const auto& plane : planes)
+      if (std::abs(cloud.X[id][plane.axis] - plane.at) <= on_plane * cloud.dx) p.B[i][plane.axis] = 0;
   }
   p.mirror.positions(p.X);
   p.mirror.scalars(p.V);

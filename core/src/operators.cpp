@@ -1,10 +1,13 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <taut/core/error.hpp>
 #include <taut/core/operators.hpp>
+#include <taut/internal/compatible_operator.hpp>
+#include <utility>
 
 namespace taut {
 
@@ -88,25 +91,44 @@ void correct(const Particles<D>& p, const PairList& pairs, PairOperator<D>& op) 
 
 }  // namespace
 
-std::vector<std::string> operator_names() { return {"standard", "corrected"}; }
+std::vector<std::string> operator_names() { return {"standard", "corrected", "compatible"}; }
+
+namespace {
+AlignedArray<float> rounded(const AlignedArray<double>& values) {
+  AlignedArray<float> out(values.size());
+  std::transform(values.begin(), values.end(), out.begin(), [](double v) { return static_cast<float>(v); });
+  return out;
+}
+}  // namespace
 
 template <int D>
-PairOperator<D> make_operator(std::string_view name, const Particles<D>& p, const PairList& pairs, const Kernel& kernel,
-                              double h, PairPrecision precision) {
-  if (name != "standard" && name != "corrected")
-    throw InputError(fmt::format("unknown operators \"{}\"; valid: {}", name, join_names(operator_names())));
+PairOperator<D> make_operator(const Method& method, const Particles<D>& p, const PairList& pairs, const Kernel& kernel,
+                              double h) {
+  const std::string& name = method.operators;
+  const auto names = operator_names();
+  if (std::find(names.begin(), names.end(), name) == names.end())
+    throw InputError(fmt::format("unknown operators \"{}\"; valid: {}", name, join_names(names)));
+  const bool single = method.pair_precision == PairPrecision::single_precision, compatible = name == "compatible";
   PairOperator<D> op;
-  op.precision = precision;
-  if (precision == PairPrecision::single_precision)
+  op.M = Field(static_cast<std::size_t>(p.total), D * D);
+  op.precision = single && !compatible ? PairPrecision::single_precision : PairPrecision::double_precision;
+  if (op.precision == PairPrecision::single_precision)
     fill_vectors(p, pairs, kernel, h, op.vectors_f);
   else
     fill_vectors(p, pairs, kernel, h, op.vectors_d);
-
-  op.M = Field(static_cast<std::size_t>(p.total), D * D);
-  if (name == "corrected")
-    correct(p, pairs, op);
-  else
+  if (name == "standard")
     leave_uncorrected(p, pairs, op);
+  else
+    correct(p, pairs, op);
+  if (compatible) {
+    make_compatible(p, pairs, kernel, h, method.compatible_iterations, op);
+    if (single) {
+      op.vectors_f = rounded(std::exchange(op.vectors_d, {}));
+      op.adjoint_f = rounded(std::exchange(op.adjoint_d, {}));
+      op.precision = PairPrecision::single_precision;
+    }
+    correct(p, pairs, op);  // linear exactness of the vectors as stored
+  }
 
   op.sum = Field(static_cast<std::size_t>(p.total), D);
 #pragma omp parallel for schedule(dynamic, 512)
@@ -119,8 +141,8 @@ PairOperator<D> make_operator(std::string_view name, const Particles<D>& p, cons
 }
 
 #define TAUT_INSTANTIATE(D)                                                                                          \
-  template PairOperator<D> make_operator<D>(std::string_view, const Particles<D>&, const PairList&, const Kernel&, \
-                                            double, PairPrecision);
+  template PairOperator<D> make_operator<D>(const Method&, const Particles<D>&, const PairList&, const Kernel&, \
+                                            double);
 TAUT_INSTANTIATE(1)
 TAUT_INSTANTIATE(2)
 TAUT_INSTANTIATE(3)

@@ -38,7 +38,7 @@ class TlDisplacement final : public Formulation<D> {
     }
     const PointView<D> points{columns(p_.X), p_.total};
     pairs_ = find_pairs<D>(points, setup.method.support_dx * p_.dx, {search_method(setup.method.neighbours)});
-    op_ = make_operator<D>(setup.method.operators, p_, pairs_, kernel_, h_, setup.method.pair_precision);
+    op_ = make_operator<D>(setup.method, p_, pairs_, kernel_, h_);
     Q_ = Field(static_cast<std::size_t>(p_.total), D * D);
     if (setup.method.zero_energy_control > 0)
       control_.emplace(p_, pairs_, kernel_, h_, setup.method.zero_energy_control);
@@ -106,7 +106,7 @@ class TlDisplacement final : public Formulation<D> {
   template <class Real>
   void gradient_pass(const Real* vectors);
   template <class Real>
-  void force_pass(const Real* vectors);
+  void force_pass(const Real* adjoint);
   double largest_frequency();
 
   MaterialGroups groups_;
@@ -178,7 +178,7 @@ void TlDisplacement<D>::gradient_pass(const Real* vectors) {
 
 template <int D>
 template <class Real>
-void TlDisplacement<D>::force_pass(const Real* vectors) {
+void TlDisplacement<D>::force_pass(const Real* adjoint) {
   const Columns<D * D> Q(Q_);
   const Columns<D> sum(op_.sum);
   const double* m = p_.m.component(0);
@@ -187,7 +187,7 @@ void TlDisplacement<D>::force_pass(const Real* vectors) {
 #pragma omp parallel for schedule(static) if (p_.n > parallel_from)
   for (Index s = 0; s < groups_.slices(); ++s) {
     Pack force[D];
-    force_of_slice<D>(s, pairs_, vectors, Q, sum, force);
+    force_of_slice<D>(s, pairs_, adjoint, Q, sum, force);
     if (control_) control_->add_to(s, p_.x, force);
     const Index i = s * lanes;
     for (int d = 0; d < D; ++d) {
@@ -208,7 +208,7 @@ void TlDisplacement<D>::update_accelerations(double t) {
     p_.mirror.tensors(Q_);
     if (control_) p_.mirror.tensors(control_->deformation());
   }
-  single ? force_pass(op_.vectors_f.data()) : force_pass(op_.vectors_d.data());
+  single ? force_pass(op_.adjoint(op_.vectors_f.data())) : force_pass(op_.adjoint(op_.vectors_d.data()));
   this->finish_accelerations(t);
 }
 
@@ -279,9 +279,9 @@ double TlDisplacement<D>::largest_frequency() {
     for (Index s = 0; s < groups_.slices(); ++s) {
       Pack force[D];
       if (single)
-        force_of_slice<D>(s, pairs_, op_.vectors_f.data(), Q, sum, force);
+        force_of_slice<D>(s, pairs_, op_.adjoint(op_.vectors_f.data()), Q, sum, force);
       else
-        force_of_slice<D>(s, pairs_, op_.vectors_d.data(), Q, sum, force);
+        force_of_slice<D>(s, pairs_, op_.adjoint(op_.vectors_d.data()), Q, sum, force);
       for (int d = 0; d < D; ++d)
         for (int l = 0; l < lanes && s * lanes + l < p_.n; ++l)
           p_.a.component(d)[s * lanes + l] = force[d][l] / p_.m.component(0)[s * lanes + l];

@@ -19,6 +19,9 @@ struct Method {
   std::string neighbours = "cell_list";
   PairPrecision pair_precision = PairPrecision::single_precision;
 
+  /// Conjugate-gradient iterations of the set-up of `compatible` operators.
+  int compatible_iterations = 40;
+
   /// Pairwise zero-energy control of the total Lagrangian forms (Ganzenmueller 2015), 0 = absent.
   double zero_energy_control = 0;
 

@@ -3,7 +3,6 @@
 /// Discrete gradient operators on a pair list.
 
 #include <string>
-#include <string_view>
 #include <taut/core/fields.hpp>
 #include <taut/core/kernel.hpp>
 #include <taut/core/method.hpp>
@@ -15,16 +14,19 @@ namespace taut {
 
 /// A gradient operator and its adjoint, in factored form: with one vector G_ab for each directed pair and one matrix M_a for each particle,
 ///   F_a = [sum_b x_ab (x) G_ab] M_a^T + F0_a,   x_ab = x_b - x_a,
-///   f_a = sum_b (Q_a + Q_b) G_ab,        Q_a = V_a P_a M_a,
-/// where G_ab = V_a V_b grad W_ab = -G_ba, and M_a = I / V_a (`standard`) or K_a / V_a (`corrected`). F0 is absent where
+///   f_a = sum_b (Q_a G_ab - Q_b G_ba),     Q_a = V_a P_a M_a,
+/// where, for `standard` and `corrected`, G_ab = V_a V_b grad W_ab = -G_ba and M_a = I / V_a or K_a / V_a; the vectors of
+/// `compatible` are not antisymmetric, so -G_ba is stored beside G_ab. F0 is absent where
 /// linear fields are exact; for `standard` it makes F = I + grad u, so that the body is free of stress at rest. The
 /// force is the exact adjoint of the gradient, so linear momentum is kept to round-off.
-/// Slot k of lane l holds component d of G at vectors[(k * D + d) * lanes + l]; zero where the slot has no pair.
+/// Lane l of slot k holds component d of G at vectors[(k * D + d) * lanes + l]; zero where the slot has no pair.
 template <int D>
 struct PairOperator {
   PairPrecision precision = PairPrecision::single_precision;
   AlignedArray<float> vectors_f;
   AlignedArray<double> vectors_d;
+  AlignedArray<float> adjoint_f;  ///< -G_ba, where it differs from G_ab; else empty
+  AlignedArray<double> adjoint_d;
   Field M;    ///< D×D components, row-major; zero beyond the bodies' particles
   Field F0;   ///< D×D components, or empty
   Field sum;  ///< D components: sum_b G_ab
@@ -38,17 +40,23 @@ struct PairOperator {
     }
     return g;
   }
-  std::size_t bytes() const { return vectors_f.bytes() + vectors_d.bytes() + M.bytes() + F0.bytes() + sum.bytes(); }
+  /// What the force is summed with: -G_ba.
+  const float* adjoint(const float*) const { return adjoint_f.empty() ? vectors_f.data() : adjoint_f.data(); }
+  const double* adjoint(const double*) const { return adjoint_d.empty() ? vectors_d.data() : adjoint_d.data(); }
+  std::size_t bytes() const {
+    return vectors_f.bytes() + vectors_d.bytes() + adjoint_f.bytes() + adjoint_d.bytes() + M.bytes() + F0.bytes() + sum.bytes();
+  }
 };
 
-/// Builds an operator by its name ("standard", "corrected") in the reference configuration.
+/// Builds the operator that `method` names in the reference configuration.
 /// `corrected`: K_a = [sum_b V_b grad W_ab (x) X_ab]^-1, so that sum_b X_ab (x) g_ab = I (Randles & Libersky 1996; Bonet & Lok 1999). The matrix is made
 /// from the pair vectors as stored, hence linear fields are exact in single precision as well.
-/// \throws InputError for an unknown name (valid ones listed), or a particle whose matrix is singular: its id, its position, how many
+/// `compatible`: the least change of those vectors that also closes: see taut/internal/compatible_operator.hpp. Needs boundary area vectors.
+/// \throws InputError for an unknown name (valid ones listed), missing areas, or a particle whose matrix is singular: its id, its position, how many
 /// neighbours it has, and what to do.
 template <int D>
-PairOperator<D> make_operator(std::string_view name, const Particles<D>& particles, const PairList& pairs,
-                              const Kernel& kernel, double smoothing_length, PairPrecision precision);
+PairOperator<D> make_operator(const Method& method, const Particles<D>& particles, const PairList& pairs,
+                              const Kernel& kernel, double smoothing_length);
 std::vector<std::string> operator_names();
 
 }  // namespace taut

@@ -52,9 +52,9 @@ TAUT_INLINE void gradient_of_slice(Index s, const PairList& pairs, const Real* v
     }
 }
 
-/// Forces on the eight particles of slice s: sum_b (Q_a + Q_b) G_ab, with sum_b G_ab given.
+/// Forces on the eight particles of slice s: Q_a sum_b G_ab - sum_b Q_b G_ba, with the first sum and -G_ba given.
 template <int D, class Real>
-TAUT_INLINE void force_of_slice(Index s, const PairList& pairs, const Real* vectors, const Columns<D * D>& Q,
+TAUT_INLINE void force_of_slice(Index s, const PairList& pairs, const Real* adjoint, const Columns<D * D>& Q,
                                 const Columns<D>& vector_sum, Pack (&force)[D]) {
   const Index i = s * lanes;
   for (int d = 0; d < D; ++d) {
@@ -62,7 +62,7 @@ TAUT_INLINE void force_of_slice(Index s, const PairList& pairs, const Real* vect
     for (int e = 1; e < D; ++e) force[d] += load(Q.c[d * D + e] + i) * load(vector_sum.c[e] + i);
   }
   const auto add = [&](std::int64_t k, auto&& neighbour) TAUT_INLINE_LAMBDA {
-    const Real* g = vectors + k * D * lanes;
+    const Real* g = adjoint + k * D * lanes;
     for (int e = 0; e < D; ++e) {
       const Pack ge = load(g + e * lanes);
       for (int d = 0; d < D; ++d) force[d] += neighbour(Q.c[d * D + e]) * ge;
