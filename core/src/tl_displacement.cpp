@@ -250,11 +250,14 @@ double TlDisplacement<D>::largest_frequency() {
       const auto hash = static_cast<std::uint32_t>(i * D + d + 1) * 2654435761u;
       y.component(d)[i] = static_cast<double>(hash) / 4294967296.0 - 0.5;
     }
-  std::vector<double> modulus;
-  for (const auto* m : materials_) modulus.push_back(m->density() * m->wave_speed() * m->wave_speed());
+  Field stiffness(static_cast<std::size_t>(p_.total), 1);  // V rho c_p^2; zero in the padding
+  for (Index i = 0; i < p_.n; ++i) {
+    const auto* m = materials_[p_.material[static_cast<std::size_t>(i)]];
+    stiffness.component(0)[i] = p_.V.component(0)[i] * m->density() * m->wave_speed() * m->wave_speed();
+  }
 
   const Columns<D * D> M(op_.M), Q(Q_);
-  const Columns<D> sum(op_.sum), yc(y);
+  const Columns<D> sum(op_.sum);
   const bool single = op_.precision == PairPrecision::single_precision;
   double eigenvalue = 0;
   for (int it = 0; it < iterations; ++it) {
@@ -263,16 +266,13 @@ double TlDisplacement<D>::largest_frequency() {
     for (Index s = 0; s < groups_.slices(); ++s) {
       Pack H[D * D];
       gradient(s, y, H);
-      for (int l = 0; l < lanes; ++l) {
-        const Index i = std::min<Index>(s * lanes + l, p_.n - 1);
-        const double factor = p_.V.component(0)[i] * modulus[p_.material[static_cast<std::size_t>(i)]];
-        for (int d = 0; d < D; ++d)
-          for (int e = 0; e < D; ++e) {
-            double q = 0;
-            for (int j = 0; j < D; ++j) q += H[d * D + j][l] * M.c[j * D + e][i];
-            if (s * lanes + l < p_.n) Q_.component(d * D + e)[i] = factor * q;
-          }
-      }
+      const Index i = s * lanes;
+      for (int d = 0; d < D; ++d)
+        for (int e = 0; e < D; ++e) {
+          Pack q = H[d * D] * load(M.c[e] + i);
+          for (int j = 1; j < D; ++j) q += H[d * D + j] * load(M.c[j * D + e] + i);
+          store(Q_.component(d * D + e) + i, q * load(stiffness.component(0) + i));
+        }
     }
     if (!p_.mirror.empty()) p_.mirror.tensors(Q_);
 #pragma omp parallel for schedule(static) if (p_.n > parallel_from)
