@@ -38,7 +38,15 @@ inline Double8 load8(const double* p) {
   std::memcpy(&r, p, sizeof r);
   return r;
 }
-inline Double8 splat8(double v) { TAUT_LANES(Part{} + v); }
+inline Double8 splat8(double v) {
+#if defined(__AVX512F__)
+  return {{Part{v, v, v, v, v, v, v, v}}};
+#elif defined(__AVX__)
+  return {{Part{v, v, v, v}, Part{v, v, v, v}}};
+#else
+  return {{Part{v, v}, Part{v, v}, Part{v, v}, Part{v, v}}};
+#endif
+}
 inline Double8 operator+(const Double8& a, const Double8& b) { TAUT_LANES(a.part[i] + b.part[i]); }
 inline Double8 operator-(const Double8& a, const Double8& b) { TAUT_LANES(a.part[i] - b.part[i]); }
 inline Double8 operator*(const Double8& a, const Double8& b) { TAUT_LANES(a.part[i] * b.part[i]); }
@@ -84,6 +92,11 @@ struct Bytes32 {
   for (unsigned i = 0; i < std::size(r.part); ++i) r.part[i] = (expression); \
   return r
 
+inline Bytes32 load_bytes(const std::uint8_t* p) {
+  Bytes32 b;
+  std::memcpy(&b, p, sizeof b);
+  return b;
+}
 inline Bytes32 splat_bytes(int v) {
   Bytes32 r;
   std::memset(&r, v, sizeof r);

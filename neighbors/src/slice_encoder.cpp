@@ -9,12 +9,6 @@ namespace {
 // faster), so from half of the lanes on it is worth a slot of its own.
 constexpr int worthwhile_lanes = 4;
 
-inline Bytes32 load_bytes(const std::uint8_t* p) {
-  Bytes32 b;
-  std::memcpy(&b, p, sizeof b);
-  return b;
-}
-
 inline std::uint64_t load_word(const std::uint8_t* p) {
   std::uint64_t w;
   std::memcpy(&w, p, sizeof w);
