@@ -156,16 +156,14 @@ void CellGrid<D>::collect_lanes(const Slice<D>& slice, int begin, int end, Works
       return;
     }
   }
-  std::size_t count = 0;
-  filter_box<graded>(box, reach, work, count);
-  test_candidates<graded>(slice, count, work, masks);
+  find_runs(box, reach, work.runs);
+  test_candidates<graded>(slice, filter<graded>(box, reach, work), work, masks);
 }
 
-// Candidates: the points nearer to the box than the radius. The distance to the box is rounded as the
-// distance to a point is, hence never larger than the distance to a point of the box.
+// The runs of sorted points that lie in cells within reach of the box. Runs may overlap.
 template <int D>
-template <bool graded>
-void CellGrid<D>::filter_box(const Box& box, double reach, Workspace& work, std::size_t& count) const {
+void CellGrid<D>::find_runs(const Box& box, double reach, std::vector<Run>& runs) const {
+  runs.clear();
   double low[3] = {}, high[3] = {};
   double rows = 1;
   for (int d = 0; d < D; ++d) {
@@ -174,55 +172,73 @@ void CellGrid<D>::filter_box(const Box& box, double reach, Workspace& work, std:
     if (!(low[d] <= high[d])) return;
     if (d > 0) rows *= high[d] - low[d] + 1;
   }
+  const double along = high[0] - low[0] + 1;
+  const bool more_cells_than_points =
+      rows > n_ / 4 + 16 || (!dense_ && along >= static_cast<double>(buckets_));
+  if (more_cells_than_points) {
+    runs.push_back({0, static_cast<std::uint32_t>(n_)});
+    return;
+  }
+  const std::uint32_t* const start = start_.data();
+  const auto put = [&](std::uint64_t from, std::uint64_t to) {
+    if (start[from] != start[to]) runs.push_back({start[from], start[to]});
+  };
+  const auto nx = static_cast<std::uint64_t>(along), ny = static_cast<std::uint64_t>(high[1] - low[1]) + 1,
+             nz = static_cast<std::uint64_t>(high[2] - low[2]) + 1;
+  if (dense_) {
+    const auto stride_y = static_cast<std::uint64_t>(extent_[0]);
+    const auto stride_z = D == 3 ? static_cast<std::uint64_t>(extent_[0] * extent_[1]) : 0;
+    const std::uint64_t first = row(low[1], low[2]) + static_cast<std::uint64_t>(low[0] - low_[0]);
+    for (std::uint64_t z = 0; z < nz; ++z)
+      for (std::uint64_t y = 0; y < ny; ++y) {
+        const std::uint64_t from = first + z * stride_z + y * stride_y;
+        put(from, from + nx);
+      }
+    return;
+  }
+  for (std::uint64_t z = 0; z < nz; ++z)
+    for (std::uint64_t y = 0; y < ny; ++y) {
+      const std::uint64_t base = row(low[1] + static_cast<double>(y), low[2] + static_cast<double>(z));
+      const std::uint64_t from = (base + as_bits(low[0])) & (buckets_ - 1), to = from + nx;
+      put(from, std::min(to, buckets_));
+      if (to > buckets_) put(0, to - buckets_);
+    }
+}
+
+// Candidates: the points nearer to the box than the radius. The distance to the box is rounded as the
+// distance to a point is, hence never larger than the distance to a point of the box. Returns their number.
+template <int D>
+template <bool graded>
+std::size_t CellGrid<D>::filter(const Box& box, double reach, Workspace& work) const {
+  std::size_t most = 2 * lanes;
+  for (const Run& run : work.runs) most += run.end - run.begin + lanes;
+  if (work.candidates.size() < most) work.candidates.resize(2 * most);
 
   Double8 box_low[D], box_high[D];
+  const double* sorted[D];
   for (int d = 0; d < D; ++d) {
     box_low[d] = splat8(box.low[d]);
     box_high[d] = splat8(box.high[d]);
+    sorted[d] = x_[d].data();
   }
+  const double* const sorted_r2 = r2_.data();
   const Double8 reach2 = splat8(reach * reach), zero = splat8(0);
-  const auto filter_run = [&](std::uint32_t begin, std::uint32_t end) {
-    if (work.candidates.size() < count + (end - begin) + 2 * lanes)
-      work.candidates.resize(2 * (count + (end - begin) + 2 * lanes));
-    std::uint32_t* out = work.candidates.data() + count;
-    // A pack may reach into the next cells: points like any others.
-    for (std::uint32_t j = begin; j < end; j += lanes) {
+  std::uint32_t* out = work.candidates.data();
+  for (const Run& run : work.runs)
+    for (std::uint32_t j = run.begin; j < run.end;
+         j += lanes) {  // a pack may reach beyond: into points like any others
       Double8 d2;
       for (int d = 0; d < D; ++d) {
-        const Double8 x = load8(&x_[d][j]);
+        const Double8 x = load8(sorted[d] + j);
         const Double8 gap = max(zero, max(box_low[d] - x, x - box_high[d]));  // in this order NaN stays NaN
         d2 = d == 0 ? gap * gap : d2 + gap * gap;
       }
-      const unsigned near = graded ? less(d2, max(reach2, load8(&r2_[j]))) : less(d2, reach2);
+      const unsigned near = graded ? less(d2, max(reach2, load8(sorted_r2 + j))) : less(d2, reach2);
       const auto& places = mask_tables.places[near];
       for (int i = 0; i < lanes; ++i) out[i] = j + places[static_cast<std::size_t>(i)];
       out += mask_tables.count[near];
     }
-    count = static_cast<std::size_t>(out - work.candidates.data());
-  };
-
-  if (rows > n_ / 4 + 16) {  // cells far smaller than the reach, and more of them than points
-    filter_run(0, static_cast<std::uint32_t>(n_));
-    return;
-  }
-  const auto ny = static_cast<std::int64_t>(high[1] - low[1]),
-             nz = static_cast<std::int64_t>(high[2] - low[2]);
-  for (std::int64_t iz = 0; iz <= nz; ++iz)
-    for (std::int64_t iy = 0; iy <= ny; ++iy) {
-      const std::uint64_t base = row(low[1] + static_cast<double>(iy), low[2] + static_cast<double>(iz));
-      if (dense_) {
-        const auto from = base + static_cast<std::uint64_t>(low[0] - low_[0]);
-        const auto to = base + static_cast<std::uint64_t>(high[0] - low_[0]) + 1;
-        filter_run(start_[from], start_[to]);
-      } else if (high[0] - low[0] + 1 >= static_cast<double>(buckets_)) {
-        filter_run(0, static_cast<std::uint32_t>(n_));
-      } else {
-        const std::uint64_t from = (base + as_bits(low[0])) & (buckets_ - 1);
-        const std::uint64_t to = from + static_cast<std::uint64_t>(high[0] - low[0]) + 1;
-        filter_run(start_[from], start_[std::min(to, buckets_)]);
-        if (to > buckets_) filter_run(0, start_[to - buckets_]);
-      }
-    }
+  return static_cast<std::size_t>(out - work.candidates.data());
 }
 
 template <int D>
@@ -234,32 +250,40 @@ void CellGrid<D>::test_candidates(const Slice<D>& slice, std::size_t count, Work
   for (int d = 0; d < D; ++d) x[d] = load8(slice.x[d]);
   const Double8 own_r2 = load8(slice.r2), tiny = splat8(coincident2);
   Double8 r2 = own_r2, same = own_r2 * tiny;
-  Index* hits = work.hits.data();
+  // In registers: the bytes that the loop stores could else be these.
+  const double* sorted[D];
+  for (int d = 0; d < D; ++d) sorted[d] = x_[d].data();
+  const double* const sorted_r2 = r2_.data();
+  const Index* const id = id_.data();
+  const std::uint32_t* const candidates = work.candidates.data();
+  Index* const hits = work.hits.data();
+  std::uint8_t* const lane_masks = &masks[0];
+  const Index first = slice.first;
   unsigned coincident_lanes = 0;
   std::size_t found = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const std::uint32_t j = work.candidates[i];
+    const std::uint32_t j = candidates[i];
     Double8 d2;
     for (int d = 0; d < D; ++d) {
-      const Double8 dx = x[d] - splat8(x_[d][j]);
+      const Double8 dx = x[d] - splat8(sorted[d][j]);
       d2 = d == 0 ? dx * dx : d2 + dx * dx;
     }
     if constexpr (graded) {
-      const Double8 other_r2 = splat8(r2_[j]);
+      const Double8 other_r2 = splat8(sorted_r2[j]);
       r2 = max(own_r2, other_r2);
       same = min(own_r2, other_r2) * tiny;
     }
-    const Index b = id_[j];
-    const auto lane = static_cast<std::uint32_t>(b - slice.first);
+    const Index b = id[j];
+    const auto lane = static_cast<std::uint32_t>(b - first);
     const unsigned self = lane < lanes ? 1u << lane : 0u;
     const unsigned mask = less(d2, r2) & ~self;
     coincident_lanes |= ~less(same, d2) & mask;
-    masks[b] = static_cast<std::uint8_t>(mask);
+    lane_masks[b] = static_cast<std::uint8_t>(mask);
     hits[found] = b;
     found += mask != 0;
   }
   work.coincident |= coincident_lanes;
-  for (std::size_t i = 0; i < found; ++i) masks.mark(hits[i]);
+  masks.mark(hits, found);
 }
 
 template class CellGrid<1>;

@@ -17,7 +17,11 @@ namespace taut::detail {
 template <int D>
 class CellGrid {
  public:
+  struct Run {
+    std::uint32_t begin, end;  // places in the sorted arrays
+  };
   struct Workspace {
+    std::vector<Run> runs;
     std::vector<std::uint32_t> candidates;  // places in the sorted arrays
     std::vector<Index> hits;
     unsigned coincident = 0;  // lanes that lie on another particle
@@ -37,8 +41,9 @@ class CellGrid {
   std::uint64_t row(double y, double z) const;
   template <bool graded>
   void collect_lanes(const Slice<D>& slice, int begin, int end, Workspace& work, LaneMasks& masks) const;
+  void find_runs(const Box& box, double reach, std::vector<Run>& runs) const;
   template <bool graded>
-  void filter_box(const Box& box, double reach, Workspace& work, std::size_t& count) const;
+  std::size_t filter(const Box& box, double reach, Workspace& work) const;
   template <bool graded>
   void test_candidates(const Slice<D>& slice, std::size_t count, Workspace& work, LaneMasks& masks) const;
 

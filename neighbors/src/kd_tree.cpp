@@ -50,7 +50,7 @@ struct Receiver {
     if (d2 < std::max(slice.r2[lane], other_r2)) {
       if (d2 <= std::min(slice.r2[lane], other_r2) * coincident2) coincident_lanes |= 1u << lane;
       masks[b] = static_cast<std::uint8_t>(masks[b] | 1u << lane);
-      masks.mark(b);
+      masks.mark(&b, 1);
     }
     return true;
   }

@@ -6,22 +6,25 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <limits>
+#include <memory>
 #include <taut/core/fields.hpp>
 #include <taut/core/types.hpp>
 #include <vector>
 
+#include "lanes.hpp"
+
 namespace taut::detail {
 
-// A bitmap of two levels over granules of eight particles tells which bytes may differ from zero. It sorts
-// the neighbours as they come: reading it back is ascending in the particle, at a cost that follows the pairs
-// found.
+// Two coarser levels tell which bytes may differ from zero: a bit for each granule of eight particles and a
+// flag for each 64 granules. They sort the neighbours as they come: reading them back is ascending in the
+// particle, at a cost that follows the pairs found.
 class LaneMasks {
  public:
   explicit LaneMasks(Index particles)
       : memory_(static_cast<std::uint8_t*>(std::calloc(bytes_for(particles), 1))),
         granules_(bytes_for(particles) / 8 / 64 + 1),
-        words_(granules_.size() / 64 + 1),
-        lowest_(words_.size()) {
+        groups_(granules_.size() + sizeof(Bytes32)) {
     if (!memory_) throw std::bad_alloc();
   }
 
@@ -29,14 +32,19 @@ class LaneMasks {
   std::uint8_t& operator[](Index b) { return memory_.get()[margin + b]; }
   const std::uint8_t* data() const { return memory_.get() + margin; }
 
-  void mark(Index b) {
-    const std::size_t granule = static_cast<std::size_t>(b) / 8, word = granule / 64;
-    if (!granules_[word]) {
-      words_[word / 64] |= std::uint64_t{1} << (word % 64);
-      lowest_ = std::min(lowest_, word / 64);
-      highest_ = std::max(highest_, word / 64);
+  void mark(const Index* particles, std::size_t count) {
+    std::size_t lowest = lowest_, highest = highest_;
+    std::uint64_t* const granules = granules_.data();
+    std::uint8_t* const groups = groups_.data();
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto granule = static_cast<std::size_t>(particles[i]) / 8, group = granule / 64;
+      groups[group] = 1;
+      granules[group] |= std::uint64_t{1} << (granule % 64);
+      lowest = std::min(lowest, group);
+      highest = std::max(highest, group);
     }
-    granules_[word] |= std::uint64_t{1} << (granule % 64);
+    lowest_ = lowest;
+    highest_ = highest;
   }
 
   // Calls visit(begin, end) for the maximal runs of marked granules, [begin, end) being particles, in
@@ -49,14 +57,17 @@ class LaneMasks {
       visit(static_cast<std::int64_t>(begin * 8), static_cast<std::int64_t>(end * 8));
       std::memset(memory_.get() + margin + begin * 8, 0, (end - begin) * 8);
     };
-    for (std::size_t v = lowest_; v <= highest_ && v < words_.size(); ++v) {
-      for (std::uint64_t words = std::exchange(words_[v], 0); words; words &= words - 1) {
-        const std::size_t w = v * 64 + static_cast<std::size_t>(std::countr_zero(words));
-        std::uint64_t bits = std::exchange(granules_[w], 0);
+    for (std::size_t v = lowest_; v <= highest_; v += sizeof(Bytes32)) {
+      std::uint32_t groups = nonzero(load_bytes(groups_.data() + v));
+      if (!groups) continue;
+      std::memset(groups_.data() + v, 0, sizeof(Bytes32));
+      for (; groups; groups &= groups - 1) {
+        const std::size_t g = v + static_cast<std::size_t>(std::countr_zero(groups));
+        std::uint64_t bits = std::exchange(granules_[g], 0);
         while (bits) {
           const int first = std::countr_zero(bits);
           const int length = std::countr_one(bits >> first);
-          const std::size_t start = w * 64 + static_cast<std::size_t>(first);
+          const std::size_t start = g * 64 + static_cast<std::size_t>(first);
           if (start != end) {
             flush();
             begin = start;
@@ -67,13 +78,14 @@ class LaneMasks {
       }
     }
     flush();
-    lowest_ = words_.size();
+    lowest_ = none;
     highest_ = 0;
   }
 
   static constexpr int margin = 64;
 
  private:
+  static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
   static std::size_t bytes_for(Index particles) {
     return padded(static_cast<std::size_t>(particles)) + 2 * margin;
   }
@@ -84,9 +96,9 @@ class LaneMasks {
   // calloc leaves pages that are never touched without memory: a thread pays for its own part of the cloud
   // only.
   std::unique_ptr<std::uint8_t[], Free> memory_;
-  std::vector<std::uint64_t> granules_;  // bit g: granule g is marked
-  std::vector<std::uint64_t> words_;     // bit w: granules_[w] is not zero
-  std::size_t lowest_, highest_ = 0;     // range of words_ in use
+  std::vector<std::uint64_t> granules_;
+  std::vector<std::uint8_t> groups_;         // whether granules_[g] is not zero
+  std::size_t lowest_ = none, highest_ = 0;  // groups in use
 };
 
 }  // namespace taut::detail

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
 #include <taut/core/types.hpp>
 #if defined(__SSE2__)
 #include <immintrin.h>
@@ -37,7 +38,15 @@ inline Double8 load8(const double* p) {
   std::memcpy(&r, p, sizeof r);
   return r;
 }
-inline Double8 splat8(double v) { TAUT_LANES(Part{} + v); }
+inline Double8 splat8(double v) {
+#if defined(__AVX512F__)
+  return {{Part{v, v, v, v, v, v, v, v}}};
+#elif defined(__AVX__)
+  return {{Part{v, v, v, v}, Part{v, v, v, v}}};
+#else
+  return {{Part{v, v}, Part{v, v}, Part{v, v}, Part{v, v}}};
+#endif
+}
 inline Double8 operator+(const Double8& a, const Double8& b) { TAUT_LANES(a.part[i] + b.part[i]); }
 inline Double8 operator-(const Double8& a, const Double8& b) { TAUT_LANES(a.part[i] - b.part[i]); }
 inline Double8 operator*(const Double8& a, const Double8& b) { TAUT_LANES(a.part[i] * b.part[i]); }
@@ -67,6 +76,74 @@ inline unsigned less(const Double8& a, const Double8& b) {
   }
   return m;
 #endif
+}
+
+// Thirty-two bytes.
+#if defined(__AVX2__)
+typedef std::uint8_t BytePart __attribute__((vector_size(32)));
+#else
+typedef std::uint8_t BytePart __attribute__((vector_size(16)));
+#endif
+struct Bytes32 {
+  BytePart part[32 / sizeof(BytePart)];
+};
+#define TAUT_BYTES(expression)                                               \
+  Bytes32 r;                                                                 \
+  for (unsigned i = 0; i < std::size(r.part); ++i) r.part[i] = (expression); \
+  return r
+
+inline Bytes32 load_bytes(const std::uint8_t* p) {
+  Bytes32 b;
+  std::memcpy(&b, p, sizeof b);
+  return b;
+}
+inline Bytes32 splat_bytes(int v) {
+  Bytes32 r;
+  std::memset(&r, v, sizeof r);
+  return r;
+}
+inline Bytes32 operator|(const Bytes32& a, const Bytes32& b) { TAUT_BYTES(a.part[i] | b.part[i]); }
+inline Bytes32 operator&(const Bytes32& a, const Bytes32& b) { TAUT_BYTES(a.part[i] & b.part[i]); }
+inline Bytes32 operator+(const Bytes32& a, const Bytes32& b) { TAUT_BYTES(a.part[i] + b.part[i]); }
+inline Bytes32 operator-(const Bytes32& a, const Bytes32& b) { TAUT_BYTES(a.part[i] - b.part[i]); }
+// Bytes shifted by `by` bits; the bits in `keep` only.
+template <int by>
+inline Bytes32 shift_right(const Bytes32& a, int keep) {
+  typedef std::uint16_t Shorts __attribute__((vector_size(sizeof(BytePart))));
+  Bytes32 r;
+  for (unsigned i = 0; i < std::size(r.part); ++i)
+    r.part[i] = reinterpret_cast<BytePart>(reinterpret_cast<Shorts>(a.part[i]) >> by);
+  return r & splat_bytes(keep);
+}
+#undef TAUT_BYTES
+
+// Bit i is the highest bit of byte i.
+inline std::uint32_t highest_bits(const Bytes32& a) {
+#if defined(__AVX2__)
+  return static_cast<std::uint32_t>(_mm256_movemask_epi8(reinterpret_cast<__m256i>(a.part[0])));
+#elif defined(__SSE2__)
+  return static_cast<std::uint32_t>(_mm_movemask_epi8(reinterpret_cast<__m128i>(a.part[0]))) |
+         static_cast<std::uint32_t>(_mm_movemask_epi8(reinterpret_cast<__m128i>(a.part[1]))) << 16;
+#else
+  std::uint32_t m = 0;
+  for (unsigned i = 0; i < 32; ++i)
+    m |= static_cast<std::uint32_t>(a.part[i / sizeof(BytePart)][i % sizeof(BytePart)] >> 7) << i;
+  return m;
+#endif
+}
+// Bit i is set where byte i is not zero.
+inline std::uint32_t nonzero(const Bytes32& a) {
+  Bytes32 r;
+  for (unsigned i = 0; i < std::size(r.part); ++i) r.part[i] = reinterpret_cast<BytePart>(a.part[i] != 0);
+  return highest_bits(r);
+}
+// Bit i is set where byte i has at least `count` bits set.
+template <int count>
+inline std::uint32_t at_least(const Bytes32& a) {
+  const Bytes32 pairs = a - shift_right<1>(a, 0x55);
+  const Bytes32 fours = (pairs & splat_bytes(0x33)) + shift_right<2>(pairs, 0x33);
+  const Bytes32 sum = (fours + shift_right<4>(fours, 0x0f)) & splat_bytes(0x0f);
+  return highest_bits(sum + splat_bytes(0x80 - count));
 }
 
 // For each eight-bit mask: how many bits are set, the places of the set bits in ascending order, and the bits

@@ -19,26 +19,23 @@ using Keys = std::vector<std::uint64_t>;
 
 double bin_of(double x, double width) { return std::floor(std::clamp(x / width, -1e300, 1e300)); }
 
-// The occupied bins of one coordinate, ascending; empty where there are more than `limit`.
-std::vector<double> occupied_bins(const double* x, Index n, double width, std::size_t limit) {
+// The occupied bins of one coordinate, ascending.
+std::vector<double> occupied_bins(const double* x, Index n, double width) {
   std::vector<std::unordered_set<double>> sets(static_cast<std::size_t>(omp_get_max_threads()));
 #pragma omp parallel if (detail::worth_threads(n))
   {
     std::unordered_set<double>& set = sets[static_cast<std::size_t>(omp_get_thread_num())];
 #pragma omp for schedule(static)
-    for (Index i = 0; i < n; ++i)
-      if (set.size() <= limit) set.insert(bin_of(x[i], width));
+    for (Index i = 0; i < n; ++i) set.insert(bin_of(x[i], width));
   }
   std::vector<double> bins;
   for (const auto& set : sets) bins.insert(bins.end(), set.begin(), set.end());
   std::sort(bins.begin(), bins.end());
   bins.erase(std::unique(bins.begin(), bins.end()), bins.end());
-  if (bins.size() > limit) bins.clear();
   return bins;
 }
 
-// Small whole numbers for the bins of one coordinate, in their order. Gaps are cut down to `gap`, so that an
-// outlier does not use up the range.
+// Small whole numbers for the bins of one coordinate, in their order.
 struct Ranks {
   std::vector<double> bins;
   std::vector<std::uint64_t> rank;
@@ -50,33 +47,39 @@ struct Ranks {
   }
 };
 
+// Cells by number, gaps between them closed but for one, so that an outlier does not use up the range.
 Ranks rank_cells(const double* x, Index n, double width) {
-  Ranks r{occupied_bins(x, n, width, static_cast<std::size_t>(n)), {}, width};
+  Ranks r{occupied_bins(x, n, width), {}, width};
   r.rank.resize(r.bins.size());
   for (std::size_t i = 1; i < r.bins.size(); ++i)
     r.rank[i] = r.rank[i - 1] + (r.bins[i] - r.bins[i - 1] > 1 ? 2 : 1);
   return r;
 }
 
-// Numbers of the planes of a lattice along one coordinate, where it is one: values that differ by rounding
-// only, and planes whose distances are no small fraction of a cell. Empty where it is not.
+// Planes of a lattice along one coordinate, where it is one: bands of values, narrower than their distance,
+// empty space between them. Jitter of less than half a spacing leaves such bands. Empty where there are none.
 Ranks rank_planes(const double* x, Index n, double cell) {
-  constexpr double rounding = 1e-6, near = 0.05;  // over the cell size
-  const auto [low, high] = std::minmax_element(x, x + n);
-  const double most = 64 + 20 * ((*high - *low) / cell);
-  const double width = rounding * cell;
-  Ranks r{occupied_bins(x, n, width, static_cast<std::size_t>(std::min<double>(most, n))), {}, width};
+  constexpr double bins_a_cell = 64, closed_gap = 4, least_spacing = 0.15 * bins_a_cell, most_width = 0.95;
+  Ranks r{occupied_bins(x, n, cell / bins_a_cell), {}, cell / bins_a_cell};
   r.rank.resize(r.bins.size());
-  std::size_t too_near = 0;
+  std::vector<double> spacings;
+  double begin = r.bins[0], widest = 1;
   for (std::size_t i = 1; i < r.bins.size(); ++i) {
-    const double gap = r.bins[i] - r.bins[i - 1];
-    // A plane may straddle the border of two bins, but not more.
-    const bool same = gap <= 1 && (i < 2 || r.rank[i - 1] > r.rank[i - 2]);
+    const bool same = r.bins[i] - r.bins[i - 1] <= closed_gap;  // chance leaves bins of a band empty
     r.rank[i] = r.rank[i - 1] + !same;
-    too_near += !same && gap * rounding < near;
+    if (!same) {
+      spacings.push_back(r.bins[i] - begin);
+      begin = r.bins[i];
+    }
+    widest = std::max(widest, r.bins[i] - begin + 1);
   }
-  if (!r.bins.empty() && static_cast<double>(too_near) > 0.05 * static_cast<double>(r.rank.back()))
-    r.bins.clear();
+  double spacing = bins_a_cell;
+  if (!spacings.empty()) {
+    const auto median = spacings.begin() + static_cast<std::ptrdiff_t>(spacings.size() / 2);
+    std::nth_element(spacings.begin(), median, spacings.end());
+    spacing = *median;
+  }
+  if (spacing < least_spacing || widest > most_width * std::min(spacing, bins_a_cell)) r.bins.clear();
   return r;
 }
 
@@ -105,22 +108,22 @@ std::uint64_t hilbert(std::array<std::uint64_t, D> c, int bits) {
   return key;
 }
 
-// Empty where the points are no lattice.
+// Rows along the first coordinate, the last coordinate slowest. Empty where the points do not lie in rows.
 template <int D>
-Keys lattice_keys(const PointView<D>& points, double cell) {
+Keys row_keys(const PointView<D>& points, double cell) {
   std::array<Ranks, D> planes;
-  double product = 1;
-  for (int d = 0; d < D; ++d) {
+  double rows = 1;
+  for (int d = 1; d < D; ++d) {
     planes[d] = rank_planes(points.x[d], points.n, cell);
     if (planes[d].bins.empty()) return {};
-    product *= static_cast<double>(planes[d].rank.back() + 1);
-    if (product > 64.0 * points.n) return {};
+    rows *= static_cast<double>(planes[d].rank.back() + 1);
   }
+  if (rows > 8.0 * points.n) return {};  // such as a diagonal line
   Keys keys(static_cast<std::size_t>(points.n));
 #pragma omp parallel for schedule(static) if (detail::worth_threads(points.n))
   for (Index i = 0; i < points.n; ++i) {
     std::uint64_t key = 0;
-    for (int d = D - 1; d >= 0; --d) key = key * (planes[d].rank.back() + 1) + planes[d](points.x[d][i]);
+    for (int d = D - 1; d > 0; --d) key = key * (planes[d].rank.back() + 1) + planes[d](points.x[d][i]);
     keys[static_cast<std::size_t>(i)] = key;
   }
   return keys;
@@ -145,12 +148,14 @@ Keys curve_keys(const PointView<D>& points, double cell) {
   return keys;
 }
 
-// Sorts the points that share a cell, last coordinate slowest.
+// Sorts the points that share a key: in rows the first coordinate decides, in cells the last.
 template <int D>
-void sort_within_cells(const PointView<D>& points, const Keys& sorted, std::vector<Index>& order) {
+void sort_equal_keys(const PointView<D>& points, const Keys& sorted, bool rows, std::vector<Index>& order) {
   const auto before = [&](Index a, Index b) {
-    for (int d = D - 1; d >= 0; --d)
-      if (points.x[d][a] != points.x[d][b]) return points.x[d][a] < points.x[d][b];
+    for (int i = 0; i < D; ++i) {
+      const double* x = points.x[rows ? i : D - 1 - i];
+      if (x[a] != x[b]) return x[a] < x[b];
+    }
     return a < b;
   };
 #pragma omp parallel for schedule(dynamic, 4096) if (detail::worth_threads(points.n))
@@ -173,19 +178,13 @@ std::vector<Index> locality_order(PointView<D> points, double cell) {
   std::vector<Index> order(static_cast<std::size_t>(points.n));
   if (points.n == 0) return order;
 
-  Keys keys;
-  bool lattice = true;
-  if constexpr (D == 1) {
-    keys.assign(order.size(), 0);  // a line has one order: the sort within cells gives it
-  } else {
-    keys = lattice_keys(points, cell);
-    lattice = !keys.empty();
-  }
-  if (keys.empty()) keys = curve_keys(points, cell);
+  Keys keys = row_keys(points, cell);
+  const bool rows = !keys.empty();
+  if (!rows) keys = curve_keys(points, cell);
   const auto largest = *std::max_element(keys.begin(), keys.end());
   const auto from = detail::sort_by_key(std::span(keys), std::bit_width(largest));
   std::copy_n(from.get(), order.size(), order.begin());
-  if (D == 1 || !lattice) sort_within_cells(points, keys, order);
+  sort_equal_keys(points, keys, rows, order);
   return order;
 }
 

@@ -57,6 +57,19 @@ TEST_CASE("a lattice may have holes, thin parts and an outlier") {
   CHECK(locality_order(ring.view(), 1.5) == identity(ring.n()));
 }
 
+TEST_CASE("a lattice that jitter has moved keeps its rows") {
+  for (const double jitter : {0.02, 0.2, 0.4}) {
+    const auto cube = lattice<3>({12, 12, 12}, jitter);
+    const auto order = locality_order(cube.reordered(shuffled<3>(cube.n())).view(), 1.6);
+    CHECK(cube.reordered(shuffled<3>(cube.n())).reordered(order).x == cube.x);
+  }
+  // Spheres have rows of different lengths, hexagonal lattices rows that are shifted.
+  Points<2> hexagonal;
+  for (int j = 0; j < 20; ++j)
+    for (int i = 0; i < 20 + j; ++i) hexagonal.add({i + 0.5 * (j % 2), std::sqrt(0.75) * j});
+  CHECK(locality_order(hexagonal.view(), 1.5) == identity(hexagonal.n()));
+}
+
 TEST_CASE("a line follows its coordinate") {
   const auto p = random_cloud<1>(500);
   const auto order = locality_order(p.view(), 0.01);
@@ -89,8 +102,8 @@ TEST_CASE_TEMPLATE("consecutive cells of the curve are neighbours", Dimension, s
                    std::integral_constant<int, 3>) {
   constexpr int D = Dimension::value;
   std::array<int, D> count;
-  count.fill(8);
-  auto p = lattice<D>(count, 0.3);  // one point a cell, and no lattice any more
+  count.fill(D == 2 ? 32 : 8);
+  auto p = lattice<D>(count, 0.49);  // one point a cell, and no rows any more
   p.shift(0.5);
   const auto order = locality_order(p.view(), 1.0);
   REQUIRE(is_permutation(order));
