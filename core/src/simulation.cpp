@@ -13,6 +13,7 @@
 #include <taut/core/simulation.hpp>
 #include <taut/integrators/integrator.hpp>
 #include <taut/integrators/relax.hpp>
+#include <taut/integrators/step_control.hpp>
 #include <taut/internal/assembly.hpp>
 #include <taut/neighbors/search.hpp>
 
@@ -76,6 +77,7 @@ struct Simulation<D>::Impl {
   Constraints<D> constraints;
   Loads<D> loads;
   std::unique_ptr<Formulation<D>> formulation;
+  StepControl step_control;
   double time = 0, setup_seconds = 0;
 
   Index place(std::size_t id) const { return particles.place.at(id); }
@@ -313,7 +315,7 @@ RunResult Simulation<D>::run(double duration, const RunOptions& options) {
   s.start();
   s.notify(s.time);
   while (s.time < end && !s.broke(result, result.steps)) {
-    double dt = s.next_step(options.cfl, options.max_step);
+    double dt = s.step_control.next(s.next_step(options.cfl, options.max_step));
     if (s.time + dt > end * (1 - 1e-14)) dt = end - s.time;
     integrator->step(*s.formulation, s.time, dt);
     s.time = s.time + dt >= end * (1 - 1e-14) ? end : s.time + dt;
