@@ -228,7 +228,7 @@ double TlDisplacement<D>::strain_energy() const {
     const int n = (last - first) * lanes;
     groups_.template call<1>(c, e, [&](std::size_t m, double* out) { materials_[m]->stress({n, chunk, F, P, out}); });
     for (Index i = first * lanes; i < std::min<Index>(last * lanes, p_.n); ++i)
-      energy[static_cast<std::size_t>(c)] += p_.V.component(0)[i] * e[i - first * lanes];
+      energy[static_cast<std::size_t>(c)] += p_.modelled_share(i) * p_.V.component(0)[i] * e[i - first * lanes];
   }
   double total = 0;
   for (const double e : energy) total += e;
