@@ -121,7 +121,12 @@ Simulation<D>::Simulation(Cloud<D> cloud, std::shared_ptr<const Material<D>> mat
   check<D>(method);
   if (!material) throw InputError("a simulation needs a material");
   if (cloud.size() == 0) throw InputError("the body has no particles");
-  if (!(cloud.dx > 0)) throw InputError(fmt::format("the cloud's spacing dx = {:g} must be positive", cloud.dx));
+  if (!(cloud.dx > 0) || !std::isfinite(cloud.dx))
+    throw InputError(fmt::format("the cloud's spacing dx = {:g} must be positive", cloud.dx));
+  if (cloud.V.size() != cloud.size())
+    throw InputError(fmt::format("the cloud has {} positions but {} volumes", cloud.size(), cloud.V.size()));
+  if (!cloud.B.empty() && cloud.B.size() != cloud.size())
+    throw InputError(fmt::format("the cloud has {} positions but {} boundary area vectors", cloud.size(), cloud.B.size()));
   impl_->material.assign(cloud.size(), 0);
   impl_->cloud = std::move(cloud);
   impl_->materials.push_back(std::move(material));

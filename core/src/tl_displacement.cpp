@@ -214,6 +214,9 @@ void TlDisplacement<D>::update_accelerations(double t) {
 
 template <int D>
 double TlDisplacement<D>::strain_energy() const {
+  for (const auto* material : materials_)
+    if (!material->has_energy())
+      throw InputError(fmt::format("material \"{}\" has no stored energy", material->name()));
   std::vector<double> energy(static_cast<std::size_t>(groups_.chunks()), 0.0);
 #pragma omp parallel for schedule(static) if (p_.n > parallel_from)
   for (Index c = 0; c < groups_.chunks(); ++c) {
