@@ -65,6 +65,7 @@ Particles<D> assemble(const Cloud<D>& cloud, std::vector<std::shared_ptr<const M
   std::fill(p.m.flat().begin(), p.m.flat().end(), 1.0);
   const std::vector<double> times = multiplicity<D>(cloud, planes);
   p.material.resize(n);
+  if (!planes.empty()) p.planes.resize(n);
   if (!cloud.B.empty()) p.B.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     const auto id = static_cast<std::size_t>(p.id[i]);
@@ -73,6 +74,7 @@ Particles<D> assemble(const Cloud<D>& cloud, std::vector<std::shared_ptr<const M
     p.X.template set_vec<D>(i, ordered[i]);
     p.V.component(0)[i] = V;
     p.material[i] = material[id];
+    if (!planes.empty()) p.planes[i] = static_cast<std::uint8_t>(std::lround(std::log2(times[id])));
     p.m.component(0)[i] = V * p.materials[material[id]]->density();
     for (int d = 0; d < D; ++d) p.m_flat.component(d)[i] = p.m.component(0)[i];
     if (cloud.B.empty()) continue;

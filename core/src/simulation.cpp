@@ -13,6 +13,7 @@
 #include <taut/core/simulation.hpp>
 #include <taut/integrators/integrator.hpp>
 #include <taut/integrators/relax.hpp>
+#include <taut/integrators/step_control.hpp>
 #include <taut/internal/assembly.hpp>
 #include <taut/neighbors/search.hpp>
 
@@ -76,6 +77,7 @@ struct Simulation<D>::Impl {
   Constraints<D> constraints;
   Loads<D> loads;
   std::unique_ptr<Formulation<D>> formulation;
+  StepControl step_control;
   double time = 0, setup_seconds = 0;
 
   Index place(std::size_t id) const { return particles.place.at(id); }
@@ -119,7 +121,12 @@ Simulation<D>::Simulation(Cloud<D> cloud, std::shared_ptr<const Material<D>> mat
   check<D>(method);
   if (!material) throw InputError("a simulation needs a material");
   if (cloud.size() == 0) throw InputError("the body has no particles");
-  if (!(cloud.dx > 0)) throw InputError(fmt::format("the cloud's spacing dx = {:g} must be positive", cloud.dx));
+  if (!(cloud.dx > 0) || !std::isfinite(cloud.dx))
+    throw InputError(fmt::format("the cloud's spacing dx = {:g} must be positive", cloud.dx));
+  if (cloud.V.size() != cloud.size())
+    throw InputError(fmt::format("the cloud has {} positions but {} volumes", cloud.size(), cloud.V.size()));
+  if (!cloud.B.empty() && cloud.B.size() != cloud.size())
+    throw InputError(fmt::format("the cloud has {} positions but {} boundary area vectors", cloud.size(), cloud.B.size()));
   impl_->material.assign(cloud.size(), 0);
   impl_->cloud = std::move(cloud);
   impl_->materials.push_back(std::move(material));
@@ -313,7 +320,7 @@ RunResult Simulation<D>::run(double duration, const RunOptions& options) {
   s.start();
   s.notify(s.time);
   while (s.time < end && !s.broke(result, result.steps)) {
-    double dt = s.next_step(options.cfl, options.max_step);
+    double dt = s.step_control.next(s.next_step(options.cfl, options.max_step));
     if (s.time + dt > end * (1 - 1e-14)) dt = end - s.time;
     integrator->step(*s.formulation, s.time, dt);
     s.time = s.time + dt >= end * (1 - 1e-14) ? end : s.time + dt;
@@ -347,7 +354,7 @@ RunResult Simulation<D>::relax(const RelaxOptions& options) {
   s.start();
   const auto undamped = make_integrator("leapfrog");
   while (s.time - start < options.free_time && result.steps < options.max_steps && !s.broke(result, result.steps)) {
-    const double dt = s.next_step(options.cfl, 0);
+    const double dt = s.step_control.next(s.next_step(options.cfl, 0));
     undamped->step(*s.formulation, s.time, dt);
     s.time += dt;
     if (++result.steps % inspect_every == 0) s.formulation->inspect();

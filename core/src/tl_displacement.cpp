@@ -216,7 +216,7 @@ template <int D>
 double TlDisplacement<D>::strain_energy() const {
   for (const auto* material : materials_)
     if (!material->has_energy())
-      throw InputError(fmt::format("material '{}' has no stored energy", material->name()));
+      throw InputError(fmt::format("material \"{}\" has no stored energy", material->name()));
   std::vector<double> energy(static_cast<std::size_t>(groups_.chunks()), 0.0);
 #pragma omp parallel for schedule(static) if (p_.n > parallel_from)
   for (Index c = 0; c < groups_.chunks(); ++c) {
@@ -231,7 +231,7 @@ double TlDisplacement<D>::strain_energy() const {
     const int n = (last - first) * lanes;
     groups_.template call<1>(c, e, [&](std::size_t m, double* out) { materials_[m]->stress({n, chunk, F, P, out}); });
     for (Index i = first * lanes; i < std::min<Index>(last * lanes, p_.n); ++i)
-      energy[static_cast<std::size_t>(c)] += p_.V.component(0)[i] * e[i - first * lanes];
+      energy[static_cast<std::size_t>(c)] += p_.modelled_share(i) * p_.V.component(0)[i] * e[i - first * lanes];
   }
   double total = 0;
   for (const double e : energy) total += e;

@@ -2,37 +2,17 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <numeric>
-#include <taut/core/operators.hpp>
-#include <taut/internal/assembly.hpp>
-#include <taut/neighbors/search.hpp>
 #include <taut/taut.hpp>
+
+#include "discretised.hpp"
 
 using namespace taut;
 
 namespace {
 
 template <int D>
-struct Built {
-  Particles<D> p;
-  PairList pairs;
-  PairOperator<D> op;
-};
-
-template <int D>
-Built<D> build(double dx, double jitter, Method method) {
-  const auto cloud = make_cloud(box<D>(Vec<D>::Zero(), Vec<D>::Ones()), {.dx = dx, .jitter = jitter});
-  const auto material = make_material<D>("neo_hookean", {.E = 1e6, .nu = 0.3, .density = 1000});
-  Built<D> b;
-  const double reach = method.support_dx * cloud.dx;
-  b.p = assemble<D>(cloud, {material}, std::vector<std::uint8_t>(cloud.size(), 0), {}, reach);
-  PointView<D> view;
-  for (int d = 0; d < D; ++d) view.x[static_cast<std::size_t>(d)] = b.p.X.component(d);
-  view.n = b.p.n;
-  b.pairs = find_pairs<D>(view, reach);
-  const Kernel kernel(method.kernel, D);
-  b.op = make_operator<D>(method, b.p, b.pairs, kernel, reach / kernel.radius_factor());
-  return b;
+Discretised<D> build(double dx, double jitter, const Method& method) {
+  return {make_cloud(box<D>(Vec<D>::Zero(), Vec<D>::Ones()), {.dx = dx, .jitter = jitter}), method};
 }
 
 template <int D>
@@ -44,18 +24,18 @@ Vec<D> at(const AlignedArray<double>& vectors, std::int64_t k, int lane) {
 
 // Largest |sum_b (V_a M_a G_ab - V_b M_b G_ba) + B_a| over the face of a cell: the force of a unit stress.
 template <int D>
-double closure_error(const Built<D>& b) {
+double closure_error(const Discretised<D>& b) {
   double largest = 0;
   const auto& adjoint = b.op.adjoint_d.empty() ? b.op.vectors_d : b.op.adjoint_d;
-  for (Index a = 0; a < b.p.n; ++a) {
-    Vec<D> sum = b.p.B[static_cast<std::size_t>(a)];
+  for (Index a = 0; a < b.particles.n; ++a) {
+    Vec<D> sum = b.particles.B[static_cast<std::size_t>(a)];
     b.pairs.for_each(a, [&](Index c, std::int64_t k, int lane) {
-      sum += b.p.V.component(0)[a] * b.op.M.template mat<D>(a) * at<D>(b.op.vectors_d, k, lane);
-      sum += b.p.V.component(0)[c] * b.op.M.template mat<D>(c) * at<D>(adjoint, k, lane);
+      sum += b.particles.V.component(0)[a] * b.op.M.template mat<D>(a) * at<D>(b.op.vectors_d, k, lane);
+      sum += b.particles.V.component(0)[c] * b.op.M.template mat<D>(c) * at<D>(adjoint, k, lane);
     });
     largest = std::max(largest, sum.norm());
   }
-  return largest / std::pow(b.p.dx, D - 1);
+  return largest / std::pow(b.particles.dx, D - 1);
 }
 
 template <int D>
@@ -66,10 +46,10 @@ void check_properties(double dx, double jitter) {
   const auto b = build<D>(dx, jitter, method);
   double linear = 0;
   bool conjugate = true;
-  for (Index a = 0; a < b.p.n; ++a) {
+  for (Index a = 0; a < b.particles.n; ++a) {
     Mat<D> sum = Mat<D>::Zero();
     b.pairs.for_each(a, [&](Index c, std::int64_t k, int lane) {
-      sum += (b.p.X.template vec<D>(c) - b.p.X.template vec<D>(a)) * at<D>(b.op.vectors_d, k, lane).transpose();
+      sum += (b.particles.X.template vec<D>(c) - b.particles.X.template vec<D>(a)) * at<D>(b.op.vectors_d, k, lane).transpose();
       // -G_ba as stored with a is, bit for bit, minus G_ba as stored with b: momentum is kept to the last bit.
       b.pairs.for_each(c, [&](Index back, std::int64_t kb, int lb) {
         if (back == a) conjugate = conjugate && at<D>(b.op.adjoint_d, k, lane) == -at<D>(b.op.vectors_d, kb, lb);

@@ -53,6 +53,7 @@ class Formulation : public Dynamics {
   /// \throws InputError where the formulation has no reference configuration.
   virtual Mat<D> deformation_gradient(Index i) const;
   virtual Mat<D> first_piola_kirchhoff(Index i) const;
+  /// Of the modelled part of the body [J].
   virtual double strain_energy() const;
   virtual std::int64_t pairs() const = 0;
   virtual std::int64_t rebuilds() const { return 0; }

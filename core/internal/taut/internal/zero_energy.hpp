@@ -80,7 +80,10 @@ class ZeroEnergyControl {
   std::size_t bytes() const { return F_.bytes() + stiffness_.bytes(); }
 
  private:
-  double modulus(Index a) const { return p_.materials[p_.material[static_cast<std::size_t>(a)]]->parameters().E; }
+  double modulus(Index a) const {
+    const Index of = a < p_.n ? a : p_.mirror.master(a - p_.n);
+    return p_.materials[p_.material[static_cast<std::size_t>(of)]]->parameters().E;
+  }
 
   const Particles<D>& p_;
   const PairList& pairs_;

@@ -1,0 +1,127 @@
+#pragma once
+// A body with its pair list and operator, and a body with its formulation, laid open for the tests of the
+// core.
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <random>
+#include <taut/core/formulation.hpp>
+#include <taut/core/operators.hpp>
+#include <taut/internal/assembly.hpp>
+#include <taut/neighbors/search.hpp>
+#include <taut/taut.hpp>
+#include <utility>
+#include <vector>
+
+namespace taut {
+
+template <int D>
+PointView<D> points_of(const Field& X, Index n) {
+  PointView<D> view;
+  for (int d = 0; d < D; ++d) view.x[static_cast<std::size_t>(d)] = X.component(d);
+  view.n = n;
+  return view;
+}
+
+/// Particles, pairs and one operator.
+template <int D>
+struct Discretised {
+  Particles<D> particles;
+  PairList pairs;
+  PairOperator<D> op;
+
+  Discretised(const Cloud<D>& cloud, const Method& method) {
+    const Kernel kernel(method.kernel, D);
+    const double support = method.support_dx * cloud.dx;
+    const std::shared_ptr<const Material<D>> material =
+        make_material<D>("linear_elastic", {.E = 1, .nu = 0, .density = 1});
+    particles = assemble<D>(cloud, {material}, std::vector<std::uint8_t>(cloud.size(), 0), {}, support);
+    pairs = find_pairs<D>(points_of<D>(particles.X, particles.total), support);
+    op = make_operator<D>(method, particles, pairs, kernel, support / kernel.radius_factor());
+  }
+
+  Vec<D> X(Index a) const { return particles.X.template vec<D>(a); }
+
+  /// Gradient of a scalar function at particle a (internal index).
+  template <class F>
+  Vec<D> gradient(Index a, F&& f) const {
+    Vec<D> sum = Vec<D>::Zero();
+    pairs.for_each(
+        a, [&](Index b, std::int64_t k, int lane) { sum += (f(X(b)) - f(X(a))) * op.vector(k, lane); });
+    return op.M.template mat<D>(a) * sum;
+  }
+};
+
+/// A formulation without a simulation around it: forces of any state. Must stay where it is.
+template <int D>
+struct Bare {
+  Method method;
+  Constraints<D> constraints;
+  Loads<D> loads;
+  Particles<D> particles;
+  std::unique_ptr<Formulation<D>> formulation;
+
+  Bare(const Cloud<D>& cloud, std::shared_ptr<const Material<D>> material, Method m,
+       const std::vector<typename MirrorMap<D>::Plane>& planes = {})
+      : method(std::move(m)),
+        particles(assemble<D>(cloud, {std::move(material)}, std::vector<std::uint8_t>(cloud.size(), 0),
+                              planes, method.support_dx * cloud.dx)),
+        formulation(make_formulation<D>({particles, constraints, loads, method})) {}
+  Bare(const Bare&) = delete;
+  Bare& operator=(const Bare&) = delete;
+
+  Index n() const { return particles.n; }
+  Vec<D> X(Index i) const { return particles.X.template vec<D>(i); }
+  Vec<D> x(Index i) const { return particles.x.template vec<D>(i); }
+  template <class F>
+  void place(F&& position) {
+    for (Index i = 0; i < n(); ++i) particles.x.template set_vec<D>(i, position(X(i)));
+  }
+  /// Forces [N] of the present positions.
+  std::vector<Vec<D>> forces() {
+    formulation->update_accelerations(0);
+    std::vector<Vec<D>> f;
+    for (Index i = 0; i < n(); ++i) f.push_back(particles.m.component(0)[i] * particles.a.template vec<D>(i));
+    return f;
+  }
+};
+
+/// A box of n spacings of 1 / n along each axis but the first, which is half as long again: no cube hides a
+/// swapped axis.
+template <int D>
+Cloud<D> brick(int n, double jitter = 0, Lattice lattice = Lattice::node_centred) {
+  Vec<D> max = Vec<D>::Ones();
+  max[0] = 1.5;
+  return make_cloud(box<D>(Vec<D>::Zero(), max),
+                    {.dx = 1.0 / n, .lattice = lattice, .jitter = jitter, .seed = 7});
+}
+
+/// A rotation by `angle` about a fixed skew axis; the plane's in 2D, none in 1D.
+template <int D>
+Mat<D> rotation(double angle) {
+  Mat<D> R = Mat<D>::Identity();
+  if constexpr (D == 2) {
+    R << std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle);
+  } else if constexpr (D == 3) {
+    const Vec<3> n = Vec<3>(1, 2, -2) / 3.0;
+    Mat<3> W;
+    W << 0, -n[2], n[1], n[2], 0, -n[0], -n[1], n[0], 0;
+    R += std::sin(angle) * W + (1 - std::cos(angle)) * W * W;
+  }
+  return R;
+}
+
+/// A smooth motion without symmetry, of the given size: for states that no special case makes easy.
+template <int D>
+Vec<D> wavy(const Vec<D>& X, double size) {
+  Vec<D> u;
+  for (int d = 0; d < D; ++d) {
+    double phase = 0.3 + d;
+    for (int e = 0; e < D; ++e) phase += (1.7 + 0.9 * e - 0.6 * d) * X[e];
+    u[d] = size * std::sin(phase);
+  }
+  return u;
+}
+
+}  // namespace taut
