@@ -1,0 +1,186 @@
+#include <taut/core/error.hpp>
+#include <taut/core/simulation.hpp>
+#include <taut/internal/vtkhdf.hpp>
+
+#ifdef TAUT_HAS_HDF5
+#include <hdf5.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <numeric>
+#endif
+#include <cmath>
+
+namespace taut {
+namespace internal {
+
+#ifdef TAUT_HAS_HDF5
+namespace {
+
+/// An HDF5 identifier, closed at the end of its scope.
+class Handle {
+ public:
+  using Close = herr_t (*)(hid_t);
+  Handle(hid_t id, Close close, const char* what) : id_(id), close_(close) {
+    if (id < 0) throw RunError(std::string("HDF5 cannot ") + what);
+  }
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  ~Handle() { close_(id_); }
+  operator hid_t() const { return id_; }
+
+ private:
+  hid_t id_;
+  Close close_;
+};
+
+/// HDF5 prints its own error stack by default; ours is the exception.
+class QuietErrors {
+ public:
+  QuietErrors() {
+    H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  }
+  QuietErrors(const QuietErrors&) = delete;
+  QuietErrors& operator=(const QuietErrors&) = delete;
+  ~QuietErrors() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
+
+ private:
+  H5E_auto2_t function_ = nullptr;
+  void* data_ = nullptr;
+};
+
+void check(herr_t status, const char* what) {
+  if (status < 0) throw RunError(std::string("HDF5 cannot ") + what);
+}
+
+void write_dataset(hid_t group, const std::string& name, hid_t type, std::size_t rows, int columns, const void* data) {
+  const hsize_t size[2] = {rows, static_cast<hsize_t>(columns)};
+  const Handle space(H5Screate_simple(columns > 1 ? 2 : 1, size, nullptr), H5Sclose, "make a data space");
+  const Handle set(H5Dcreate2(group, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose,
+                   "make a data set");
+  if (rows) check(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "write a data set");
+}
+
+void write_header(hid_t group) {
+  const hsize_t two = 2;
+  const std::int64_t version[2] = {1, 0};
+  const Handle pair(H5Screate_simple(1, &two, nullptr), H5Sclose, "make a data space");
+  const Handle attribute(H5Acreate2(group, "Version", H5T_NATIVE_INT64, pair, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+                         "make an attribute");
+  check(H5Awrite(attribute, H5T_NATIVE_INT64, version), "write an attribute");
+
+  const std::string name = "UnstructuredGrid";
+  const Handle text(H5Tcopy(H5T_C_S1), H5Tclose, "make a string type");
+  check(H5Tset_size(text, name.size()), "size a string type");
+  check(H5Tset_strpad(text, H5T_STR_NULLPAD), "pad a string type");
+  const Handle scalar(H5Screate(H5S_SCALAR), H5Sclose, "make a data space");
+  const Handle type(H5Acreate2(group, "Type", text, scalar, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, "make an attribute");
+  check(H5Awrite(type, text, name.data()), "write an attribute");
+}
+
+void write_file(const std::string& file, std::span<const double> xyz, std::span<const PointArray> arrays) {
+  const std::size_t n = xyz.size() / 3;
+  const Handle out(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose, "create the file");
+  const Handle root(H5Gcreate2(out, "VTKHDF", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, "make a group");
+  write_header(root);
+
+  const auto count = static_cast<std::int64_t>(n);
+  write_dataset(root, "NumberOfPoints", H5T_NATIVE_INT64, 1, 1, &count);
+  write_dataset(root, "NumberOfCells", H5T_NATIVE_INT64, 1, 1, &count);
+  write_dataset(root, "NumberOfConnectivityIds", H5T_NATIVE_INT64, 1, 1, &count);
+  write_dataset(root, "Points", H5T_NATIVE_DOUBLE, n, 3, xyz.data());
+  std::vector<std::int64_t> indices(n + 1);
+  std::iota(indices.begin(), indices.end(), 0);
+  write_dataset(root, "Connectivity", H5T_NATIVE_INT64, n, 1, indices.data());
+  write_dataset(root, "Offsets", H5T_NATIVE_INT64, n + 1, 1, indices.data());
+  const unsigned char vtk_vertex = 1;
+  const std::vector<unsigned char> types(n, vtk_vertex);
+  write_dataset(root, "Types", H5T_NATIVE_UCHAR, n, 1, types.data());
+
+  const Handle points(H5Gcreate2(root, "PointData", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, "make a group");
+  for (const PointArray& array : arrays)
+    write_dataset(points, array.name, H5T_NATIVE_DOUBLE, n, array.components, array.values.data());
+}
+
+}  // namespace
+
+void write_vtkhdf_points(const std::string& file, std::span<const double> xyz, std::span<const PointArray> arrays) {
+  const QuietErrors quiet;
+  const std::string temporary = file + ".tmp";
+  std::error_code ignored;
+  try {
+    write_file(temporary, xyz, arrays);
+    std::filesystem::rename(temporary, file);
+  } catch (const std::exception& error) {
+    std::filesystem::remove(temporary, ignored);
+    throw RunError(file + ": cannot write the fields: " + error.what());
+  }
+}
+
+#else
+
+void write_vtkhdf_points(const std::string& file, std::span<const double>, std::span<const PointArray>) {
+  throw RunError(file + ": this build of taut has no field output, for HDF5 was not found when it was configured; install "
+                        "HDF5 (Debian: libhdf5-dev) and configure again");
+}
+
+#endif
+
+}  // namespace internal
+
+bool has_field_output() {
+#ifdef TAUT_HAS_HDF5
+  return true;
+#else
+  return false;
+#endif
+}
+
+namespace {
+
+template <int D>
+double von_mises(const Mat<D>& sigma) {
+  // Out-of-plane components of 1D and 2D states are not part of the in-plane tensor and count as zero.
+  Eigen::Matrix3d s = Eigen::Matrix3d::Zero();
+  s.template topLeftCorner<D, D>() = sigma;
+  s -= s.trace() / 3 * Eigen::Matrix3d::Identity();
+  return std::sqrt(1.5 * s.squaredNorm());
+}
+
+}  // namespace
+
+template <int D>
+void write_vtkhdf(const std::string& file, const Simulation<D>& simulation) {
+  using internal::PointArray;
+  const std::size_t n = simulation.size();
+  std::vector<double> xyz(3 * n, 0.0);
+  PointArray displacement{"displacement", 3, std::vector<double>(3 * n, 0.0)};
+  PointArray velocity{"velocity", 3, std::vector<double>(3 * n, 0.0)};
+  PointArray stress{"cauchy_stress", 9, std::vector<double>(9 * n, 0.0)};
+  PointArray mises{"von_mises", 1, std::vector<double>(n)};
+  PointArray mass{"mass", 1, std::vector<double>(n)};
+  PointArray id{"id", 1, std::vector<double>(n)};
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec<D> x = simulation.position(i), u = simulation.displacement(i), v = simulation.velocity(i);
+    const Mat<D> sigma = simulation.cauchy_stress(i);
+    for (int r = 0; r < D; ++r) {
+      xyz[3 * i + static_cast<std::size_t>(r)] = x[r];
+      displacement.values[3 * i + static_cast<std::size_t>(r)] = u[r];
+      velocity.values[3 * i + static_cast<std::size_t>(r)] = v[r];
+      for (int c = 0; c < D; ++c) stress.values[9 * i + static_cast<std::size_t>(3 * r + c)] = sigma(r, c);
+    }
+    mises.values[i] = von_mises<D>(sigma);
+    mass.values[i] = simulation.mass(i);
+    id.values[i] = static_cast<double>(i);
+  }
+  const PointArray arrays[] = {std::move(displacement), std::move(velocity), std::move(stress),
+                               std::move(mises),        std::move(mass),     std::move(id)};
+  internal::write_vtkhdf_points(file, xyz, arrays);
+}
+
+template void write_vtkhdf<1>(const std::string&, const Simulation<1>&);
+template void write_vtkhdf<2>(const std::string&, const Simulation<2>&);
+template void write_vtkhdf<3>(const std::string&, const Simulation<3>&);
+
+}  // namespace taut
