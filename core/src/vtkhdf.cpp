@@ -54,11 +54,12 @@ void check(herr_t status, const char* what) {
   if (status < 0) throw RunError(std::string("HDF5 cannot ") + what);
 }
 
-void write_dataset(hid_t group, const std::string& name, hid_t type, std::size_t rows, int columns, const void* data) {
+void write_dataset(hid_t group, const std::string& name, hid_t type, std::size_t rows, int columns,
+                   const void* data) {
   const hsize_t size[2] = {rows, static_cast<hsize_t>(columns)};
   const Handle space(H5Screate_simple(columns > 1 ? 2 : 1, size, nullptr), H5Sclose, "make a data space");
-  const Handle set(H5Dcreate2(group, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose,
-                   "make a data set");
+  const Handle set(H5Dcreate2(group, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                   H5Dclose, "make a data set");
   if (rows) check(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "write a data set");
 }
 
@@ -66,8 +67,8 @@ void write_header(hid_t group) {
   const hsize_t two = 2;
   const std::int64_t version[2] = {1, 0};
   const Handle pair(H5Screate_simple(1, &two, nullptr), H5Sclose, "make a data space");
-  const Handle attribute(H5Acreate2(group, "Version", H5T_NATIVE_INT64, pair, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
-                         "make an attribute");
+  const Handle attribute(H5Acreate2(group, "Version", H5T_NATIVE_INT64, pair, H5P_DEFAULT, H5P_DEFAULT),
+                         H5Aclose, "make an attribute");
   check(H5Awrite(attribute, H5T_NATIVE_INT64, version), "write an attribute");
 
   const std::string name = "UnstructuredGrid";
@@ -75,14 +76,17 @@ void write_header(hid_t group) {
   check(H5Tset_size(text, name.size()), "size a string type");
   check(H5Tset_strpad(text, H5T_STR_NULLPAD), "pad a string type");
   const Handle scalar(H5Screate(H5S_SCALAR), H5Sclose, "make a data space");
-  const Handle type(H5Acreate2(group, "Type", text, scalar, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, "make an attribute");
+  const Handle type(H5Acreate2(group, "Type", text, scalar, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+                    "make an attribute");
   check(H5Awrite(type, text, name.data()), "write an attribute");
 }
 
 void write_file(const std::string& file, std::span<const double> xyz, std::span<const PointArray> arrays) {
   const std::size_t n = xyz.size() / 3;
-  const Handle out(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose, "create the file");
-  const Handle root(H5Gcreate2(out, "VTKHDF", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, "make a group");
+  const Handle out(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose,
+                   "create the file");
+  const Handle root(H5Gcreate2(out, "VTKHDF", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose,
+                    "make a group");
   write_header(root);
 
   const auto count = static_cast<std::int64_t>(n);
@@ -98,14 +102,17 @@ void write_file(const std::string& file, std::span<const double> xyz, std::span<
   const std::vector<unsigned char> types(n, vtk_vertex);
   write_dataset(root, "Types", H5T_NATIVE_UCHAR, n, 1, types.data());
 
-  const Handle points(H5Gcreate2(root, "PointData", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, "make a group");
+  const Handle points(H5Gcreate2(root, "PointData", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose,
+                      "make a group");
+  write_dataset(points, "id", H5T_NATIVE_INT64, n, 1, indices.data());
   for (const PointArray& array : arrays)
     write_dataset(points, array.name, H5T_NATIVE_DOUBLE, n, array.components, array.values.data());
 }
 
 }  // namespace
 
-void write_vtkhdf_points(const std::string& file, std::span<const double> xyz, std::span<const PointArray> arrays) {
+void write_vtkhdf_points(const std::string& file, std::span<const double> xyz,
+                         std::span<const PointArray> arrays) {
   const QuietErrors quiet;
   const std::string temporary = file + ".tmp";
   std::error_code ignored;
@@ -121,8 +128,10 @@ void write_vtkhdf_points(const std::string& file, std::span<const double> xyz, s
 #else
 
 void write_vtkhdf_points(const std::string& file, std::span<const double>, std::span<const PointArray>) {
-  throw RunError(file + ": this build of taut has no field output, for HDF5 was not found when it was configured; install "
-                        "HDF5 (Debian: libhdf5-dev) and configure again");
+  throw RunError(
+      file +
+      ": this build of taut has no field output, for HDF5 was not found when it was configured; install "
+      "HDF5 (Debian: libhdf5-dev) and configure again");
 }
 
 #endif
@@ -160,7 +169,6 @@ void write_vtkhdf(const std::string& file, const Simulation<D>& simulation) {
   PointArray stress{"cauchy_stress", 9, std::vector<double>(9 * n, 0.0)};
   PointArray mises{"von_mises", 1, std::vector<double>(n)};
   PointArray mass{"mass", 1, std::vector<double>(n)};
-  PointArray id{"id", 1, std::vector<double>(n)};
   for (std::size_t i = 0; i < n; ++i) {
     const Vec<D> x = simulation.position(i), u = simulation.displacement(i), v = simulation.velocity(i);
     const Mat<D> sigma = simulation.cauchy_stress(i);
@@ -172,10 +180,9 @@ void write_vtkhdf(const std::string& file, const Simulation<D>& simulation) {
     }
     mises.values[i] = von_mises<D>(sigma);
     mass.values[i] = simulation.mass(i);
-    id.values[i] = static_cast<double>(i);
   }
   const PointArray arrays[] = {std::move(displacement), std::move(velocity), std::move(stress),
-                               std::move(mises),        std::move(mass),     std::move(id)};
+                               std::move(mises), std::move(mass)};
   internal::write_vtkhdf_points(file, xyz, arrays);
 }
 

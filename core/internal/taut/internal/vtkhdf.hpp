@@ -15,8 +15,9 @@ struct PointArray {
   std::vector<double> values;
 };
 
-/// Writes points (x, y, z a point) as vertices of an unstructured grid, VTKHDF version 1.0, under a temporary name first.
-/// \throws RunError when the file cannot be written or this build has no HDF5.
+/// Writes points (x, y, z a point) as vertices of an unstructured grid, VTKHDF version 1.0, under a temporary
+/// name first. Besides `arrays` every point gets its number as "id". \throws RunError when the file cannot be
+/// written or this build has no HDF5.
 void write_vtkhdf_points(const std::string& file, std::span<const double> xyz,
                          std::span<const PointArray> arrays);
 

@@ -1,0 +1,192 @@
+#include <lib/build.hpp>
+#include <lib/scene_parts.hpp>
+#include <limits>
+
+namespace taut::bench {
+namespace {
+
+/// What the library says of its arguments, at the place in the scene that gave them.
+template <class F>
+auto at_place(const Place& place, const char* table, F&& call) {
+  try {
+    return call();
+  } catch (const InputError& error) {
+    fail(place, std::string("[") + table + "] " + error.what());
+  }
+}
+
+template <int D>
+Vec<D> vec(const std::vector<double>& values) {
+  Vec<D> v;
+  for (int d = 0; d < D; ++d) v[d] = values[static_cast<std::size_t>(d)];
+  return v;
+}
+
+template <int D>
+Shape<D> make_shape(const ShapeSpec& spec) {
+  if (spec.type == "box") return box<D>(vec<D>(spec.min), vec<D>(spec.max));
+  if (spec.type == "sphere") return sphere<D>(vec<D>(spec.centre), spec.radius);
+  if (spec.type == "ring") return ring<D>(vec<D>(spec.centre), spec.inner_radius, spec.outer_radius);
+  if constexpr (D == 3)
+    if (spec.type == "cylinder") return cylinder(vec<3>(spec.from), vec<3>(spec.to), spec.radius);
+  Shape<D> shape = make_shape<D>(spec.of.front());
+  for (std::size_t i = 1; i < spec.of.size(); ++i)
+    shape = spec.type == "union" ? shape | make_shape<D>(spec.of[i]) : shape - make_shape<D>(spec.of[i]);
+  return shape;
+}
+
+/// The body's bounding box without clamp layers, and how far from a face its particles may lie.
+template <int D>
+struct Bounds {
+  Vec<D> min, max;
+  double tolerance = 0;
+};
+
+template <int D>
+Bounds<D> bounds_of(const Scene& scene, const RunSpec& run, const SweepPoint& point, const Cloud<D>& cloud) {
+  Bounds<D> bounds;
+  if (scene.geometry.type == "csv") {
+    bounds.min.setConstant(std::numeric_limits<double>::max());
+    bounds.max = -bounds.min;
+    for (const Vec<D>& X : cloud.X) {
+      bounds.min = bounds.min.cwiseMin(X);
+      bounds.max = bounds.max.cwiseMax(X);
+    }
+    bounds.tolerance = 0.25 * cloud.dx;
+    return bounds;
+  }
+  const Shape<D> shape = make_shape<D>(scene.geometry);
+  bounds.min = shape.min();
+  bounds.max = shape.max();
+  // Cell-centred particles of a face lie half a cell inside it, and cells are no wider than 1.5 dx.
+  const LatticeSpec lattice = lattice_of(run, point);
+  bounds.tolerance = (lattice.kind == Lattice::cell_centred ? 0.75 : 1e-6) * lattice.dx;
+  return bounds;
+}
+
+template <int D>
+Where<D> where_of(const Selection& selection, const Bounds<D>& bounds, bool beyond_face) {
+  return [=](const Vec<D>& X) {
+    for (const auto& [axis, interval] : selection.where) {
+      const double slack = 1e-9 * (bounds.max - bounds.min).maxCoeff();
+      if (X[axis] < interval[0] - slack || X[axis] > interval[1] + slack) return false;
+    }
+    if (selection.on.empty()) return true;
+    const int axis = axis_number(selection.on);
+    const bool low = selection.on.ends_with("_min");
+    const double inside = low ? X[axis] - bounds.min[axis] : bounds.max[axis] - X[axis];
+    return beyond_face ? inside < 0 : inside <= bounds.tolerance;
+  };
+}
+
+History history_of(const BoundarySpec& boundary) {
+  if (!boundary.history) return {};
+  return [history = *boundary.history](double t) { return history.factor(t); };
+}
+
+template <int D>
+void apply(Simulation<D>& simulation, const BoundarySpec& boundary, const Bounds<D>& bounds,
+           const RunSpec& run, const SweepPoint& point) {
+  const bool layers = boundary.layers > 0 && run.lattice.kind == Lattice::cell_centred;
+  const Where<D> where = where_of(boundary.selection, bounds, layers);
+  if (boundary.type == "clamp") {
+    simulation.clamp(where);
+  } else if (boundary.type == "roller") {
+    simulation.roller(where, boundary.axis);
+  } else if (boundary.type == "prescribed") {
+    simulation.prescribe(where, boundary.axis,
+                         [u = boundary.displacement, h = history_of(boundary)](const Vec<D>&, double t) {
+                           return h ? u * h(t) : u;
+                         });
+  } else if (boundary.type == "load") {
+    simulation.load(where, force_of(boundary, point) * vec<D>(boundary.direction).normalized(),
+                    history_of(boundary));
+  } else if (boundary.type == "body_force") {
+    simulation.body_force(vec<D>(boundary.acceleration), history_of(boundary));
+  } else {
+    const int axis = axis_number(boundary.selection.on);
+    simulation.symmetry_plane(axis,
+                              boundary.selection.on.ends_with("_max") ? bounds.max[axis] : bounds.min[axis]);
+  }
+}
+
+/// The simulation asks for the initial state later, so the functions own what they need.
+template <int D>
+void set_initial_state(Simulation<D>& simulation, const Scene& scene, const Bounds<D>& bounds) {
+  if (scene.initial.empty()) return;
+  const auto at = [bounds, all = scene.initial](const Vec<D>& X, auto&& add) {
+    Vec<D> sum = Vec<D>::Zero();
+    for (const InitialSpec& initial : all)
+      if (where_of(initial.selection, bounds, false)(X)) add(initial, sum);
+    return sum;
+  };
+  simulation.set_velocity([at](const Vec<D>& X) {
+    return at(X, [](const InitialSpec& initial, Vec<D>& v) {
+      if (!initial.velocity.empty()) v = vec<D>(initial.velocity);
+    });
+  });
+  simulation.set_displacement([at, bounds](const Vec<D>& X) {
+    return at(X, [&](const InitialSpec& initial, Vec<D>& u) {
+      if (!initial.stretch.empty())
+        u = (vec<D>(initial.stretch).array() - 1).matrix().cwiseProduct(X - bounds.min);
+    });
+  });
+}
+
+template <int D>
+std::shared_ptr<const Material<D>> build_material(const MaterialSpec& spec) {
+  return at_place(spec.place, "material", [&]() -> std::shared_ptr<const Material<D>> {
+    return make_material<D>(spec.model, spec.parameters);
+  });
+}
+
+}  // namespace
+
+template <int D>
+Cloud<D> build_cloud(const Scene& scene, const RunSpec& run, const SweepPoint& point) {
+  const ShapeSpec& geometry = scene.geometry;
+  if (geometry.type == "csv")
+    return at_place(geometry.place, "geometry", [&] { return read_cloud<D>(geometry.file); });
+  const LatticeSpec lattice = lattice_of(run, point);
+  LatticeOptions options;
+  options.dx = lattice.dx;
+  options.lattice = lattice.kind;
+  options.jitter = lattice.jitter;
+  options.seed = lattice.seed;
+  if (lattice.kind == Lattice::cell_centred)
+    for (const BoundarySpec& boundary : scene.boundaries)
+      if (boundary.layers > 0) {
+        const auto axis = static_cast<std::size_t>(axis_number(boundary.selection.on));
+        options.layers[axis][boundary.selection.on.ends_with("_max")] = boundary.layers;
+      }
+  const Shape<D> shape = at_place(geometry.place, "geometry", [&] { return make_shape<D>(geometry); });
+  return at_place(lattice.place, "lattice", [&] { return make_cloud<D>(shape, options); });
+}
+
+template <int D>
+Simulation<D> build_simulation(const Scene& scene, const RunSpec& run, const SweepPoint& point) {
+  Cloud<D> cloud = build_cloud<D>(scene, run, point);
+  const Bounds<D> bounds = bounds_of(scene, run, point, cloud);
+  const auto material = build_material<D>(material_of(scene, run, point));
+  Simulation<D> simulation =
+      at_place(run.place, "run", [&] { return Simulation<D>(std::move(cloud), material, run.method); });
+  for (const RegionSpec& region : scene.regions) {
+    const auto other = build_material<D>(material_of(scene, region, run, point));
+    at_place(region.place, "region",
+             [&] { simulation.set_material(where_of(region.selection, bounds, false), other); });
+  }
+  for (const BoundarySpec& boundary : scene.boundaries)
+    at_place(boundary.place, "boundary", [&] { apply(simulation, boundary, bounds, run, point); });
+  set_initial_state(simulation, scene, bounds);
+  return simulation;
+}
+
+#define TAUT_INSTANTIATE(D)                                                          \
+  template Cloud<D> build_cloud<D>(const Scene&, const RunSpec&, const SweepPoint&); \
+  template Simulation<D> build_simulation<D>(const Scene&, const RunSpec&, const SweepPoint&);
+TAUT_INSTANTIATE(1)
+TAUT_INSTANTIATE(2)
+TAUT_INSTANTIATE(3)
+#undef TAUT_INSTANTIATE
+
+}  // namespace taut::bench

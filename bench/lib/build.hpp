@@ -1,0 +1,18 @@
+#pragma once
+/// \file
+/// From a scene, a run and a sweep point to a simulation.
+
+#include <lib/scene.hpp>
+#include <taut/core/simulation.hpp>
+
+namespace taut::bench {
+
+/// The body's particles. \throws InputError at the place in the scene that is to blame.
+template <int D>
+Cloud<D> build_cloud(const Scene& scene, const RunSpec& run, const SweepPoint& point);
+
+/// Body, materials, constraints and loads, ready to run. \throws InputError likewise.
+template <int D>
+Simulation<D> build_simulation(const Scene& scene, const RunSpec& run, const SweepPoint& point);
+
+}  // namespace taut::bench

@@ -1,0 +1,72 @@
+#pragma once
+/// \file
+/// One case: a scene under one run at one sweep point.
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <lib/results.hpp>
+#include <lib/scene.hpp>
+#include <optional>
+#include <taut/core/simulation.hpp>
+
+namespace taut::bench {
+
+/// A sampled quantity over time.
+struct Curve {
+  std::vector<double> t, value;
+};
+
+struct Measured {
+  const ProbeSpec* probe = nullptr;
+  std::optional<double> value, reference;  ///< value: absent when the case broke
+  Curve history;                           ///< dynamic cases
+  Curve exact;                             ///< where the reference is a curve
+};
+
+/// The deformed body, for pictures.
+struct Snapshot {
+  std::vector<std::array<double, 3>> x;  ///< current positions [m]
+  std::map<std::string, std::vector<double>>
+      fields;  ///< "von_mises", "cauchy_xx", "cauchy_yy", "cauchy_xy" [Pa]
+};
+
+struct CaseResult {
+  const Scene* scene = nullptr;
+  const RunSpec* run = nullptr;
+  SweepPoint point;
+  std::string material;
+  double dx = 0;
+  std::int64_t particles = 0, pairs = 0, steps = 0;
+  double time = 0, setup_s = 0, loop_s = 0, bytes = 0;
+  bool broke = false;
+  std::string what;       ///< broke: in a few words
+  std::string where;      ///< broke: particle and its way, where one is to blame
+  double broke_time = 0;  ///< [s]
+  std::vector<Measured> measured;
+  std::optional<Snapshot> snapshot;
+
+  double rate() const {
+    return loop_s > 0 ? static_cast<double>(particles) * static_cast<double>(steps) / loop_s : 0;
+  }
+  /// Rows of results.csv, one a probe; probes that this case does not take are marked skipped.
+  std::vector<Row> rows(int threads) const;
+};
+
+struct CaseOptions {
+  std::filesystem::path field_file;  ///< .vtkhdf to write; empty: none
+  bool keep_snapshot = false;
+  Progress progress;
+};
+
+/// Builds everything up to the operators and looks up every reference, so that a bad scene is found before
+/// any case runs. \throws InputError
+void check_case(const Scene& scene, const RunSpec& run, const SweepPoint& point);
+/// \throws Error; a formulation that breaks is a result.
+CaseResult run_case(const Scene& scene, const RunSpec& run, const SweepPoint& point,
+                    const CaseOptions& options);
+
+/// "load 3000 N, ν 0.3".
+std::string describe(const SweepPoint& point);
+
+}  // namespace taut::bench

@@ -1,0 +1,165 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <lib/chart.hpp>
+#include <lib/files.hpp>
+#include <lib/gnuplot.hpp>
+#include <limits>
+
+namespace taut::bench {
+namespace {
+
+struct Extent {
+  double min = std::numeric_limits<double>::max(), max = -std::numeric_limits<double>::max();
+  void add(double v, bool log) {
+    if (!std::isfinite(v) || (log && v <= 0)) return;
+    min = std::min(min, v);
+    max = std::max(max, v);
+  }
+  bool empty() const { return max < min; }
+};
+
+/// A little room on both sides; whole decades' fractions on logarithmic axes.
+Extent padded_extent(Extent e, bool log, double below, double above) {
+  if (e.empty()) return log ? Extent{0.1, 10} : Extent{-1, 1};
+  if (log) {
+    const double ratio = std::max(e.max / e.min, 4.0);
+    return {e.min / std::pow(ratio, below), e.max * std::pow(ratio, above)};
+  }
+  const double span = e.max > e.min ? e.max - e.min : std::max(std::abs(e.max), 1e-12);
+  return {e.min - below * span, e.max + above * span};
+}
+
+std::string csv_of(const Chart& chart) {
+  std::string text = "series,x,y\n";
+  for (const Series& s : chart.series) {
+    std::string label = s.label;
+    std::replace(label.begin(), label.end(), ',', ';');
+    for (std::size_t i = 0; i < s.x.size(); ++i) text += fmt::format("{},{},{}\n", label, s.x[i], s.y[i]);
+    for (const double x : s.broke_x) text += fmt::format("{},{},broke\n", label, x);
+  }
+  return text;
+}
+
+std::string style_of(const Series& s) {
+  static constexpr std::array<int, 7> filled = {7, 5, 9, 13, 11, 15, 7}, hollow = {6, 4, 8, 12, 10, 14, 6};
+  const auto mark = static_cast<std::size_t>(s.colour) % filled.size();
+  switch (s.style) {
+    case Series::Style::truth:
+      return fmt::format("with {} lc rgb '#111111' lw 2 pt 1 ps 0.9", s.marks ? "linespoints" : "lines");
+    case Series::Style::guide:
+      return "with lines lc rgb '#999999' lw 1 dt 2";
+    case Series::Style::printed:
+      return fmt::format("with points lc rgb '{}' lw 1.6 pt {} ps 1.15", run_colour(s.colour), hollow[mark]);
+    case Series::Style::run:
+      break;
+  }
+  if (!s.marks) return fmt::format("with lines lc rgb '{}' lw 1.8", run_colour(s.colour));
+  return fmt::format("with linespoints lc rgb '{}' lw 1.8 pt {} ps 0.75", run_colour(s.colour), filled[mark]);
+}
+
+/// Ticks at 1, 2 and 5 of each decade, or at decades alone where there are many.
+std::string log_ticks(const Extent& e) {
+  std::string ticks;
+  const bool many = e.max / e.min > 1e3;
+  for (int decade = static_cast<int>(std::floor(std::log10(e.min))); std::pow(10, decade) <= e.max; ++decade)
+    for (const int digit : {1, 2, 5}) {
+      const double at = digit * std::pow(10, decade);
+      if (at < e.min || at > e.max || (many && digit != 1)) continue;
+      ticks += fmt::format("{}'{:g}' {}", ticks.empty() ? "" : ", ", at, at);
+    }
+  return '(' + ticks + ')';
+}
+
+/// Columns of the legend: one where labels are long.
+int legend_columns(const Chart& chart) {
+  std::size_t longest = 0;
+  for (const Series& s : chart.series) longest = std::max(longest, s.label.size());
+  return longest > 46 || chart.series.size() < 4 ? 1 : 2;
+}
+int legend_rows(const Chart& chart) {
+  const int entries = static_cast<int>(chart.series.size()), columns = legend_columns(chart);
+  return (entries + columns - 1) / columns;
+}
+
+std::string script_of(const Chart& chart) {
+  Extent x, y;
+  int broken = 0;
+  for (const Series& s : chart.series) {
+    for (const double v : s.x) x.add(v, chart.log_x);
+    for (const double v : s.y) y.add(v, chart.log_y);
+    for (const double v : s.broke_x) x.add(v, chart.log_x);
+    broken += !s.broke_x.empty();
+  }
+  if (chart.line_at_zero) y.add(0, chart.log_y);
+  x = padded_extent(x, chart.log_x, 0.04, 0.04);
+  // Rows for the crosses of runs that broke, below everything else.
+  const double room = 0.055 * broken + (broken ? 0.04 : 0);
+  y = padded_extent(y, chart.log_y, 0.06 + room, 0.07);
+
+  std::string out = fmt::format("set title {} font ',15'\nset xlabel {}\nset ylabel {}\n",
+                                quoted(chart.title), quoted(chart.x_label), quoted(chart.y_label));
+  out +=
+      "set border 3 lc rgb '#555555'\nset tics nomirror textcolor rgb '#333333'\nset grid lc rgb '#e4e4e4' "
+      "lw 1 lt 1\n"
+      "set key below left vertical samplen 2.5 spacing 1.15 width 1 Left reverse noenhanced\n";
+  out += fmt::format("set key maxrows {}\n", legend_rows(chart));
+  if (chart.log_x) out += "set logscale x\nset xtics " + log_ticks(x) + '\n';
+  if (chart.log_y) out += "set logscale y\nset ytics " + log_ticks(y) + '\n';
+  if (!chart.log_x && std::max(std::abs(x.min), std::abs(x.max)) < 1e-2) out += "set format x '%.1s %c'\n";
+  out += fmt::format("set xrange [{}:{}]\nset yrange [{}:{}]\n", x.min, x.max, y.min, y.max);
+  if (chart.line_at_zero && !chart.log_y)
+    out += "set arrow from graph 0, first 0 to graph 1, first 0 nohead lc rgb '#777777' lw 1 back\n";
+  if (broken)
+    out += "set label 'broke:' at graph 0.01, graph 0.055 font ',11' textcolor rgb '#666666' offset 0,0.9\n";
+
+  std::string plots;
+  int row = 0, block = 0;
+  const auto add = [&](const std::string& what) {
+    plots += (plots.empty() ? "plot " : ", \\\n     ") + what;
+  };
+  for (const Series& s : chart.series) {
+    std::string data;
+    for (std::size_t i = 0; i < s.x.size(); ++i)
+      if (std::isfinite(s.x[i]) && std::isfinite(s.y[i])) data += fmt::format("{} {}\n", s.x[i], s.y[i]);
+    const std::string title = s.label.empty() ? "notitle" : "title " + quoted(s.label);
+    const std::string name = fmt::format("$d{}", block++);
+    out += name + " << EOD\n" + (data.empty() ? "NaN NaN\n" : data) + "EOD\n";
+    add(fmt::format("{} using 1:2 {} {}", name, style_of(s), title));
+    if (s.broke_x.empty()) continue;
+    const double at = 0.03 + 0.05 * row++;
+    const double level = chart.log_y ? y.min * std::pow(y.max / y.min, at) : y.min + at * (y.max - y.min);
+    std::string crosses;
+    for (const double v : s.broke_x) crosses += fmt::format("{} {}\n", v, level);
+    out += fmt::format("$b{} << EOD\n{}EOD\n", block, crosses);
+    add(fmt::format("$b{} using 1:2 with points lc rgb '{}' lw 2.2 pt 2 ps 0.8 notitle", block++,
+                    run_colour(s.colour)));
+  }
+  return out + plots + '\n';
+}
+
+}  // namespace
+
+bool Chart::empty() const {
+  return std::all_of(series.begin(), series.end(), [](const Series& s) {
+    return s.style != Series::Style::run || (s.x.empty() && s.broke_x.empty());
+  });
+}
+
+std::string run_colour(int index) {
+  static constexpr std::array<const char*, 7> colours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
+                                                         "#E69F00", "#56B4E9", "#8C564B"};
+  return colours[static_cast<std::size_t>(index) % colours.size()];
+}
+
+bool write_chart(const Chart& chart, const std::filesystem::path& folder, std::string& why) {
+  write_file(folder / (chart.name + ".csv"), csv_of(chart));
+  const int rows = legend_rows(chart);
+  const std::string terminal = fmt::format(
+      "svg size 860,{} font 'sans-serif,13' noenhanced background '#ffffff' rounded", 440 + 20 * rows);
+  return run_gnuplot(terminal, script_of(chart), folder / (chart.name + ".svg"), why);
+}
+
+}  // namespace taut::bench

@@ -1,0 +1,42 @@
+#pragma once
+/// \file
+/// Line charts as SVG through gnuplot, with their numbers as CSV beside them.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace taut::bench {
+
+struct Series {
+  enum class Style {
+    truth,    ///< black line, drawn on top of nothing else
+    run,      ///< coloured line with filled marks
+    printed,  ///< hollow marks of the run's colour, no line
+    guide     ///< thin grey dashed line
+  };
+  std::string label;
+  Style style = Style::run;
+  int colour = 0;  ///< index of a run: the same colour in every chart
+  std::vector<double> x, y;
+  std::vector<double> broke_x;  ///< where the run broke: crosses along the lower edge
+  bool marks = true;
+};
+
+struct Chart {
+  std::string name;  ///< of the files
+  std::string title, caption, x_label, y_label;
+  bool log_x = false, log_y = false;
+  bool line_at_zero = false;
+  std::vector<Series> series;
+
+  bool empty() const;
+};
+
+/// Colour of a run, "#rrggbb": Okabe and Ito's set, told apart by colour-blind readers too.
+std::string run_colour(int index);
+
+/// Writes FOLDER/NAME.csv and, where gnuplot works, FOLDER/NAME.svg. False without the SVG. \throws RunError
+bool write_chart(const Chart& chart, const std::filesystem::path& folder, std::string& why);
+
+}  // namespace taut::bench

@@ -1,0 +1,153 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <lib/case.hpp>
+#include <lib/compare.hpp>
+#include <lib/files.hpp>
+#include <lib/gnuplot.hpp>
+#include <lib/picture.hpp>
+#include <lib/progress.hpp>
+#include <lib/reference.hpp>
+#include <lib/report.hpp>
+#include <lib/scene_loader.hpp>
+#include <set>
+#include <tuple>
+
+namespace taut::bench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+std::string case_name(const Scene& scene, const RunSpec& run, const SweepPoint& point) {
+  std::string name = scene.name + ' ' + run.label;
+  for (const auto& [key, value] : point) name += ' ' + key + ' ' + snake_number(value);
+  return file_name_of(name);
+}
+
+/// Everything that can be wrong with a scene comes to light here, before the first run and the first file.
+void check_scene(const Scene& scene) {
+  std::set<std::tuple<const RunSpec*, double, double>> checked;
+  for (const RunSpec& run : scene.runs)
+    for (const SweepPoint& point : scene.points()) {
+      if (!wanted(run, point)) continue;
+      for (const ProbeSpec& probe : scene.probes)
+        if (wanted(probe, run, point)) {
+          reference_value(scene, run, point, probe);
+          for (const PrintedSpec& printed : probe.printed) printed_value(probe, printed, point);
+        }
+      // Loads change neither particles nor operators: one check for all of them.
+      const MaterialSpec material = material_of(scene, run, point);
+      if (checked.insert({&run, lattice_of(run, point).dx, material.parameters.nu}).second)
+        check_case(scene, run, point);
+    }
+}
+
+std::string outcome(const CaseResult& result) {
+  if (result.broke)
+    return fmt::format("BROKE at t = {:.4g} s, step {}: {}{}{}", result.broke_time, result.steps, result.what,
+                       result.where.empty() ? "" : "; ", result.where);
+  std::string text;
+  for (const Measured& m : result.measured) {
+    if (!m.value) continue;
+    text +=
+        fmt::format("{}{} = {:.5g} {}", text.empty() ? "" : ", ", m.probe->name, *m.value, m.probe->unit());
+    if (m.reference && *m.reference != 0)
+      text += fmt::format(" ({:+.2f} %)", 100 * error_of(*m.value, *m.reference, false));
+  }
+  return fmt::format("{}; {} steps, {:.2f} s, {:.2f} M particle-steps/s", text.empty() ? "done" : text,
+                     result.steps, result.loop_s, result.rate() * 1e-6);
+}
+
+void write_histories(const CaseResult& result, const std::filesystem::path& file) {
+  if (result.measured.empty() || result.measured[0].history.t.empty()) return;
+  std::string text = "time";
+  for (const Measured& m : result.measured) {
+    text += ',' + m.probe->name;
+    if (!m.exact.t.empty()) text += ',' + m.probe->name + "_exact";
+  }
+  text += '\n';
+  for (std::size_t i = 0; i < result.measured[0].history.t.size(); ++i) {
+    text += fmt::format("{}", result.measured[0].history.t[i]);
+    for (const Measured& m : result.measured) {
+      text += fmt::format(",{}", m.history.value[i]);
+      if (!m.exact.t.empty()) text += fmt::format(",{}", m.exact.value[i]);
+    }
+    text += '\n';
+  }
+  write_file(file, text);
+}
+
+bool in_a_picture(const Scene& scene, const RunSpec& run, std::size_t point) {
+  return std::any_of(scene.pictures.begin(), scene.pictures.end(), [&](const PictureSpec& picture) {
+    return shows(picture, run) && nearest_point(scene.points(), picture.of) == point;
+  });
+}
+
+}  // namespace
+
+void run_compare(const CommonOptions& common, const CompareOptions& options) {
+  const auto start = Clock::now();
+  std::vector<Scene> scenes;
+  for (const std::string& file : options.scenes) scenes.push_back(load_scene(file, common.quick));
+  std::set<std::string> scene_names;
+  for (const Scene& scene : scenes)
+    if (!scene_names.insert(scene.name).second)
+      fail(scene.place, "[scene] name: another scene of this job is called so: " + scene.name);
+  for (const Scene& scene : scenes) check_scene(scene);
+
+  std::size_t total = 0;
+  for (const Scene& scene : scenes)
+    for (const RunSpec& run : scene.runs)
+      for (const SweepPoint& point : scene.points()) total += wanted(run, point);
+  ProgressLine progress(common.quiet, total);
+  make_folder(common.out);
+  if (!options.no_fields) {
+    if (has_field_output())
+      make_folder(common.out / "fields");
+    else
+      progress.say("This build has no HDF5: fields are left out.");
+  }
+
+  std::vector<Row> rows;
+  Report report{"taut-compare", common.threads, common.quick, 0, {}};
+  std::size_t item = 0;
+  for (const Scene& scene : scenes) {
+    report.scenes.push_back({&scene, {}});
+    const std::vector<SweepPoint> points = scene.points();
+    for (const RunSpec& run : scene.runs)
+      for (std::size_t p = 0; p < points.size(); ++p) {
+        if (!wanted(run, points[p])) continue;
+        const std::string name = case_name(scene, run, points[p]);
+        const std::string where = describe(points[p]);
+        progress.begin(item++,
+                       fmt::format("{}, {}{}{}", scene.name, run.label, where.empty() ? "" : ", ", where));
+        CaseOptions how;
+        if (!options.no_fields && has_field_output())
+          how.field_file = common.out / "fields" / (name + ".vtkhdf");
+        how.keep_snapshot = in_a_picture(scene, run, p);
+        how.progress = [&](std::int64_t steps, double, double fraction) {
+          progress.update(steps, fraction);
+          return true;
+        };
+        report.scenes.back().cases.push_back(run_case(scene, run, points[p], how));
+        const CaseResult& result = report.scenes.back().cases.back();
+        progress.end(outcome(result));
+        for (Row& row : result.rows(common.threads)) rows.push_back(std::move(row));
+        write_results(common.out / "results.csv", rows);
+        write_histories(result, common.out / "histories" / (name + ".csv"));
+      }
+  }
+  report.wall_s = seconds_since(start);
+  write_report(report, common.out);
+  if (!gnuplot_available())
+    progress.say("gnuplot was not found: charts are left as tables (charts/*.csv), pictures are left out.");
+  progress.say(fmt::format("{} cases in {:.1f} s. Look at {}", total, report.wall_s,
+                           (common.out / "report.html").string()));
+}
+
+}  // namespace taut::bench

@@ -1,0 +1,16 @@
+#include <lib/names.hpp>
+#include <taut/core/formulation.hpp>
+#include <taut/core/kernel.hpp>
+#include <taut/core/operators.hpp>
+#include <taut/materials/material.hpp>
+
+namespace taut::bench {
+
+const Names& names() {
+  static const Names all = {formulation_names(),      operator_names(),
+                            Kernel::names(),          material_names(),
+                            {"cell_list", "kd_tree"}, {"leapfrog", "central_difference"}};
+  return all;
+}
+
+}  // namespace taut::bench

@@ -1,0 +1,17 @@
+#pragma once
+/// \file
+/// Names that scene files may use for the parts of the library.
+
+#include <string>
+#include <vector>
+
+namespace taut::bench {
+
+struct Names {
+  std::vector<std::string> formulations, operators, kernels, materials, neighbours, integrators;
+};
+
+/// What the library's registries hold.
+const Names& names();
+
+}  // namespace taut::bench

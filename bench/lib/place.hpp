@@ -1,0 +1,26 @@
+#pragma once
+/// \file
+/// Where in a scene file something stands.
+
+#include <memory>
+#include <string>
+#include <taut/core/error.hpp>
+
+namespace taut::bench {
+
+/// A position in a file; prints as "file:line:column".
+struct Place {
+  std::shared_ptr<const std::string> file;
+  unsigned line = 0, column = 0;
+
+  std::string str() const {
+    return (file ? *file : std::string("scene")) + ':' + std::to_string(line) + ':' + std::to_string(column);
+  }
+};
+
+/// \throws InputError "file:line:column: what".
+[[noreturn]] inline void fail(const Place& place, const std::string& what) {
+  throw InputError(place.str() + ": " + what);
+}
+
+}  // namespace taut::bench

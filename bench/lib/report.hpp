@@ -1,0 +1,28 @@
+#pragma once
+/// \file
+/// report.html: what was run, what came out, what it cost.
+
+#include <filesystem>
+#include <lib/case.hpp>
+#include <string>
+#include <vector>
+
+namespace taut::bench {
+
+struct SceneReport {
+  const Scene* scene;
+  std::vector<CaseResult> cases;
+};
+
+struct Report {
+  std::string executable;
+  int threads = 1;
+  bool quick = false;
+  double wall_s = 0;
+  std::vector<SceneReport> scenes;
+};
+
+/// Writes report.html, cases.csv, charts/ and pictures/ under `out`. \throws RunError
+void write_report(const Report& report, const std::filesystem::path& out);
+
+}  // namespace taut::bench

@@ -1,0 +1,40 @@
+#pragma once
+/// \file
+/// results.csv: one row a measured quantity, the same columns for every executable.
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace taut::bench {
+
+/// One row. Empty strings and empty optionals leave their column empty.
+struct Row {
+  std::string scene, formulation, operators, material, kernel;
+  std::optional<double> support_dx, dx;
+  std::optional<std::int64_t> particles, pairs, threads;
+  std::string precision, integrator;
+  std::optional<std::int64_t> steps;
+  std::optional<double> time;  ///< simulated [s]
+  std::string quantity;
+  std::optional<double> value, reference, error;
+  std::string unit;
+  std::string status = "ok";  ///< ok, broke (value = time of failure [s]), skipped
+  std::optional<double> setup_s, loop_s, particle_steps_per_s, bytes_per_particle;
+};
+
+/// "scene,formulation,…", in the order of the columns.
+std::string results_header();
+/// One line without its end. Numbers keep what it takes to read the same double back.
+std::string results_line(const Row& row);
+/// Value over reference less one, or their difference where `absolute` or the reference is zero.
+double error_of(double value, double reference, bool absolute);
+/// Replaces the file in one go. \throws RunError
+void write_results(const std::filesystem::path& file, const std::vector<Row>& rows);
+
+/// A swept value as part of a quantity's name: 1000 → "1000", -0.5 → "minus_0_5".
+std::string snake_number(double value);
+
+}  // namespace taut::bench

@@ -1,0 +1,104 @@
+#include <lib/scene_keys.hpp>
+
+namespace taut::bench {
+
+const std::vector<SceneTable>& scene_tables() {
+  static const std::vector<SceneTable> tables = {
+      {"top level",
+       "",
+       {"scene", "geometry", "lattice", "material", "region", "boundary", "initial", "solve", "probe",
+        "sweep", "run", "picture", "quick"}},
+      {"scene", "", {"name", "title", "dimension", "description", "accuracy"}},
+      {"geometry", "", {"type"}},
+      {"geometry", "box", {"min", "max"}},
+      {"geometry", "sphere", {"centre", "radius"}},
+      {"geometry", "ring", {"centre", "inner_radius", "outer_radius"}},
+      {"geometry", "cylinder", {"from", "to", "radius"}},
+      {"geometry", "union", {"of"}},
+      {"geometry", "difference", {"of"}},
+      {"geometry", "csv", {"file"}},
+      {"lattice", "", {"kind", "dx", "jitter", "seed"}},
+      {"material", "", {"model", "E", "nu", "density", "plane"}},
+      {"region", "", {"on", "where", "model", "E", "nu", "density", "plane"}},
+      {"boundary", "", {"type"}},
+      {"boundary", "clamp", {"on", "where", "layers"}},
+      {"boundary", "roller", {"on", "where", "axis"}},
+      {"boundary", "prescribed", {"on", "where", "axis", "displacement", "history"}},
+      {"boundary", "load", {"on", "where", "force", "direction", "history"}},
+      {"boundary", "body_force", {"acceleration", "history"}},
+      {"boundary", "symmetry", {"on"}},
+      {"history", "", {"type"}},
+      {"history", "constant", {"start"}},
+      {"history", "linear", {"start", "duration"}},
+      {"history", "smoothstep", {"start", "duration"}},
+      {"history", "raised_cosine", {"start", "duration"}},
+      {"history", "square", {"start", "duration"}},
+      {"history", "table", {"values"}},
+      {"initial", "", {"on", "where", "velocity", "stretch"}},
+      {"solve", "", {"mode", "cfl"}},
+      {"solve", "relax", {"tolerance", "ramp_time", "max_steps"}},
+      {"solve", "dynamic", {"duration", "integrator", "max_step", "samples"}},
+      {"probe", "", {"name", "type", "measure", "only", "reference", "printed"}},
+      {"probe", "displacement", {"at", "axis"}},
+      {"probe", "velocity", {"at", "axis"}},
+      {"probe", "cauchy_stress", {"at", "component"}},
+      {"probe", "linear_momentum", {"axis"}},
+      {"probe", "kinetic_energy", {}},
+      {"probe", "strain_energy", {}},
+      {"measure", "final", {}},
+      {"measure", "peak", {"window", "over"}},
+      {"measure", "arrival_time", {"window"}},
+      {"measure", "curve_error", {"window"}},
+      {"only", "", {"run", "formulation", "load", "nu", "dx", "region_density"}},
+      {"run.only", "", {"load", "nu", "dx", "region_density"}},
+      {"reference", "", {"label"}},
+      {"reference", "file", {"file", "column", "keys", "scale"}},
+      {"reference", "analytic", {"analytic"}},
+      {"printed", "", {"label", "column", "runs", "scale"}},
+      {"sweep", "", {"load", "nu", "dx", "region_density"}},
+      {"run",
+       "",
+       {"label",
+        "only",
+        "formulation",
+        "operators",
+        "kernel",
+        "support_dx",
+        "neighbours",
+        "pair_precision",
+        "zero_energy_control",
+        "viscosity",
+        "skin",
+        "velocity_gradient",
+        "artificial_stress",
+        "artificial_stress_exponent",
+        "artificial_stress_weight",
+        "lattice",
+        "dx",
+        "jitter",
+        "seed",
+        "material",
+        "plane",
+        "solve"}},
+      {"picture", "", {"title", "field", "of", "runs"}},
+      {"quick", "", {"load", "nu", "dx", "region_density", "runs", "duration", "tolerance"}},
+  };
+  return tables;
+}
+
+std::vector<std::string> keys_of(std::string_view table, std::string_view variant) {
+  std::vector<std::string> keys;
+  for (const SceneTable& entry : scene_tables())
+    if (entry.table == table && (entry.variant.empty() || entry.variant == variant))
+      keys.insert(keys.end(), entry.keys.begin(), entry.keys.end());
+  return keys;
+}
+
+std::vector<std::string> variants_of(std::string_view table) {
+  std::vector<std::string> variants;
+  for (const SceneTable& entry : scene_tables())
+    if (entry.table == table && !entry.variant.empty()) variants.push_back(entry.variant);
+  return variants;
+}
+
+}  // namespace taut::bench

@@ -1,0 +1,24 @@
+#pragma once
+/// \file
+/// The keys a scene may have, table by table. The loader accepts these and no others; a test asserts that
+/// bench/scenes/README.md documents each of them.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace taut::bench {
+
+struct SceneTable {
+  std::string table;    ///< name of the table, as in the documentation's headings
+  std::string variant;  ///< value of its `type` or `mode` that has these keys; empty: whatever it is
+  std::vector<std::string> keys;
+};
+
+const std::vector<SceneTable>& scene_tables();
+/// Keys of a table, those of one variant included.
+std::vector<std::string> keys_of(std::string_view table, std::string_view variant = "");
+/// The variants of a table ("box", "sphere", …).
+std::vector<std::string> variants_of(std::string_view table);
+
+}  // namespace taut::bench

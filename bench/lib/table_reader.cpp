@@ -1,0 +1,153 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <lib/table_reader.hpp>
+
+namespace taut::bench {
+
+bool Range::contains(double value) const {
+  return (open_min ? value > min : value >= min) && (open_max ? value < max : value <= max);
+}
+
+std::string Range::str() const {
+  const bool low = min > -std::numeric_limits<double>::max(), high = max < std::numeric_limits<double>::max();
+  const char* above = open_min ? "greater than" : "at least";
+  const char* below = open_max ? "less than" : "at most";
+  if (low && high) return fmt::format("{} {:g} and {} {:g}", above, min, below, max);
+  if (low) return fmt::format("{} {:g}", above, min);
+  if (high) return fmt::format("{} {:g}", below, max);
+  return "any finite number";
+}
+
+std::string join(const std::vector<std::string>& names) { return fmt::format("{}", fmt::join(names, ", ")); }
+
+TableReader::TableReader(const Node& node, std::string table, const std::vector<std::string>& keys)
+    : node_(node), table_(std::move(table)), values_(node.as<NodeTable>()) {
+  if (!values_) fail(node.place, fmt::format("[{}] must be a table, but is {}", table_, node.kind()));
+  for (const auto& [key, value] : *values_)
+    if (std::find(keys.begin(), keys.end(), key) == keys.end())
+      fail(value.place, fmt::format("[{}] has no key '{}'; valid: {}", table_, key, join(keys)));
+}
+
+const Node* TableReader::find(const std::string& key) const {
+  for (const auto& [name, value] : *values_)
+    if (name == key) return &value;
+  return nullptr;
+}
+
+const Node& TableReader::require(const std::string& key) const {
+  if (const Node* node = find(key)) return *node;
+  fail(node_.place, fmt::format("[{}] needs the key '{}'", table_, key));
+}
+
+void TableReader::fail_at(const std::string& key, const std::string& what) const {
+  const Node* node = find(key);
+  fail(node ? node->place : node_.place, fmt::format("[{}] {}: {}", table_, key, what));
+}
+
+std::string TableReader::text(const std::string& key) const {
+  const Node& node = require(key);
+  const auto* text = node.as<std::string>();
+  if (!text) fail_at(key, "must be a string, but is " + node.kind());
+  if (text->empty()) fail_at(key, "must not be empty");
+  return *text;
+}
+
+std::string TableReader::text(const std::string& key, const std::string& fallback) const {
+  return has(key) ? text(key) : fallback;
+}
+
+std::string TableReader::choice(const std::string& key, const std::vector<std::string>& valid) const {
+  std::string name = text(key);
+  if (std::find(valid.begin(), valid.end(), name) == valid.end())
+    fail_at(key, fmt::format("unknown name '{}'; valid: {}", name, join(valid)));
+  return name;
+}
+
+std::string TableReader::choice(const std::string& key, const std::vector<std::string>& valid,
+                                const std::string& fallback) const {
+  return has(key) ? choice(key, valid) : fallback;
+}
+
+double TableReader::number_of(const Node& node, const std::string& key, const Range& range) const {
+  double value = 0;
+  if (const auto* number = node.as<double>())
+    value = *number;
+  else if (const auto* integer = node.as<std::int64_t>())
+    value = static_cast<double>(*integer);
+  else
+    fail(node.place, fmt::format("[{}] {}: must be a number, but is {}", table_, key, node.kind()));
+  if (!std::isfinite(value))
+    fail(node.place, fmt::format("[{}] {}: must be finite, but is {}", table_, key, value));
+  if (!range.contains(value))
+    fail(node.place, fmt::format("[{}] {}: is {:g}, but must be {}", table_, key, value, range.str()));
+  return value;
+}
+
+double TableReader::number(const std::string& key, const Range& range) const {
+  return number_of(require(key), key, range);
+}
+
+double TableReader::number(const std::string& key, const Range& range, double fallback) const {
+  return has(key) ? number(key, range) : fallback;
+}
+
+std::int64_t TableReader::integer(const std::string& key, std::int64_t min, std::int64_t max) const {
+  const Node& node = require(key);
+  const auto* value = node.as<std::int64_t>();
+  if (!value) fail_at(key, "must be an integer, but is " + node.kind());
+  if (*value < min || *value > max) fail_at(key, fmt::format("is {}, but must be {} … {}", *value, min, max));
+  return *value;
+}
+
+std::int64_t TableReader::integer(const std::string& key, std::int64_t min, std::int64_t max,
+                                  std::int64_t fallback) const {
+  return has(key) ? integer(key, min, max) : fallback;
+}
+
+std::vector<double> TableReader::vector(const std::string& key, std::size_t size) const {
+  const Node& node = require(key);
+  const auto* array = node.as<NodeArray>();
+  if (!array || array->size() != size)
+    fail_at(key, fmt::format("must be an array of {} number{}, but is {}", size, size == 1 ? "" : "s",
+                             array ? fmt::format("an array of {}", array->size()) : node.kind()));
+  std::vector<double> values;
+  for (const Node& entry : *array) values.push_back(number_of(entry, key, Range::any()));
+  return values;
+}
+
+std::vector<double> TableReader::numbers(const std::string& key, const Range& range) const {
+  const Node& node = require(key);
+  const auto* array = node.as<NodeArray>();
+  if (!array) return {number_of(node, key, range)};
+  if (array->empty()) fail_at(key, "must list at least one number");
+  std::vector<double> values;
+  for (const Node& entry : *array) values.push_back(number_of(entry, key, range));
+  return values;
+}
+
+std::vector<std::string> TableReader::texts(const std::string& key) const {
+  const Node& node = require(key);
+  const auto* array = node.as<NodeArray>();
+  if (!array) return {text(key)};
+  if (array->empty()) fail_at(key, "must list at least one name");
+  std::vector<std::string> values;
+  for (const Node& entry : *array) {
+    const auto* value = entry.as<std::string>();
+    if (!value)
+      fail(entry.place, fmt::format("[{}] {}: must be a string, but is {}", table_, key, entry.kind()));
+    values.push_back(*value);
+  }
+  return values;
+}
+
+const NodeArray& TableReader::tables(const std::string& key) const {
+  const Node& node = require(key);
+  const auto* array = node.as<NodeArray>();
+  if (!array) fail_at(key, fmt::format("must be an array of tables ([[{}]]), but is {}", key, node.kind()));
+  if (array->empty()) fail_at(key, "must have at least one entry");
+  return *array;
+}
+
+}  // namespace taut::bench

@@ -1,0 +1,178 @@
+#include <doctest/doctest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <scenes/malformed.hpp>
+#include <sstream>
+#include <taut/core/simulation.hpp>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int status;
+  std::string out, err;
+};
+
+fs::path folder() {
+  static const fs::path path = [] {
+    fs::path p = fs::temp_directory_path() / ("taut-test-compare-" + std::to_string(getpid()));
+    fs::remove_all(p);
+    fs::create_directories(p);
+    return p;
+  }();
+  return path;
+}
+
+std::string content(const fs::path& file) {
+  std::ifstream in(file);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+/// Runs taut-compare in the test's folder.
+Outcome compare(const std::string& arguments, const std::string& environment = "") {
+  const std::string command = "cd '" + folder().string() + "' && " + environment + " '" TAUT_COMPARE "' " +
+                              arguments + " >out.txt 2>err.txt";
+  const int status = std::system(command.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(folder() / "out.txt"),
+          content(folder() / "err.txt")};
+}
+
+void write(const std::string& name, const std::string& text) { std::ofstream(folder() / name) << text; }
+
+std::vector<std::string> lines_of(const fs::path& file) {
+  std::vector<std::string> lines;
+  std::istringstream in(content(file));
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+}  // namespace
+
+TEST_CASE("every malformed scene ends with exit code 2, a message and no files") {
+  for (const taut::test::Mistake& mistake : taut::test::mistakes()) {
+    CAPTURE(mistake.name);
+    const std::string text = taut::test::with(mistake);
+    REQUIRE(!text.empty());
+    write("bad.toml", text);
+    const Outcome outcome = compare("bad.toml --out result");
+    CAPTURE(outcome.err);
+    CHECK(outcome.status == 2);
+    CHECK(outcome.err.starts_with("taut-compare: bad.toml:" + std::to_string(mistake.line) + ":"));
+    for (const std::string& part : mistake.says) CHECK(outcome.err.find(part) != std::string::npos);
+    CHECK(!fs::exists(folder() / "result"));
+  }
+}
+
+TEST_CASE("a reference or a cloud with what is no number is refused with its file and line") {
+  write("nan.csv", "nu,ux\n0.3,nan\n");
+  std::string text = taut::test::good_scene + "[sweep]\nnu = 0.3\n";
+  const std::string at = "at = [0.2, 0.025]";
+  text.replace(text.find(at), at.size(),
+               at + "\nreference = { file = \"nan.csv\", column = \"ux\", keys = { nu = \"nu\" } }");
+  write("bad.toml", text);
+  Outcome outcome = compare("bad.toml --out result");
+  CHECK(outcome.status == 2);
+  CAPTURE(outcome.err);
+  CHECK(outcome.err.find("nan.csv:2: column ux: 'nan' is not a finite number") != std::string::npos);
+
+  write("cloud.csv", "x,y\n0,0\n0.1,nan\n");
+  text = taut::test::good_scene;
+  const std::string box = "type = \"box\"\nmin = [0.0, 0.0]\nmax = [0.2, 0.05]\n\n[lattice]\ndx = 0.0125";
+  text.replace(text.find(box), box.size(), "type = \"csv\"\nfile = \"cloud.csv\"");
+  write("bad.toml", text);
+  outcome = compare("bad.toml --out result");
+  CHECK(outcome.status == 2);
+  CHECK(outcome.err.find("cloud.csv:3:") != std::string::npos);
+  CHECK(!fs::exists(folder() / "result"));
+}
+
+TEST_CASE("bad options and missing files are bad input too") {
+  CHECK(compare("").status == 2);
+  CHECK(compare("nowhere.toml").err.find("nowhere.toml: cannot open") != std::string::npos);
+  CHECK(compare("nowhere.toml").status == 2);
+  CHECK(compare("nowhere.toml --threads 0").status == 2);
+  CHECK(compare("--wrong").status == 2);
+  CHECK(compare("--help").status == 0);
+  CHECK(compare("--version").out.starts_with("taut-compare "));
+}
+
+TEST_CASE("a run writes everything it promises") {
+  write("good.toml", taut::test::good_scene + "\n[[picture]]\ntitle = \"Pulled\"\n");
+  const Outcome outcome = compare("good.toml --out result --threads 1");
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.status == 0);
+  CHECK(outcome.out.find("[1/1] small, total: tip_ux = ") != std::string::npos);
+  const auto rows = lines_of(folder() / "result/results.csv");
+  REQUIRE(rows.size() == 2);
+  CHECK(
+      rows[1].starts_with("small,tl_displacement,corrected,st_venant_kirchhoff,wendland_c2,1.5,0.0125,85,"));
+  CHECK(rows[1].find(",tip_ux,0.001") !=
+        std::string::npos);  // 1000 N / (E H) L = 2 mm, less the clamp's constraint
+  CHECK(rows[1].find(",m,ok,") != std::string::npos);
+  const std::string report = content(folder() / "result/report.html");
+  CHECK(report.starts_with("<!doctype html>"));
+  CHECK(report.find("tip_ux") != std::string::npos);
+  // Self-contained: nothing is loaded from elsewhere.
+  CHECK(report.find("http") == std::string::npos);
+  CHECK(report.find("src=\"/") == std::string::npos);
+  if (taut::has_field_output()) CHECK(fs::file_size(folder() / "result/fields/small_total.vtkhdf") > 1000);
+  for (const auto& entry : fs::recursive_directory_iterator(folder() / "result"))
+    CHECK(entry.path().extension() != ".tmp");
+}
+
+TEST_CASE("without gnuplot the numbers are there, and a note") {
+  write("sweep.toml",
+        taut::test::good_scene + "[sweep]\nload = [500, 1000]\n[[picture]]\ntitle = \"Pulled\"\n");
+  const Outcome outcome = compare("sweep.toml --out bare --no-fields", "TAUT_GNUPLOT=");
+  REQUIRE(outcome.status == 0);
+  CHECK(outcome.out.find("gnuplot was not found") != std::string::npos);
+  CHECK(content(folder() / "bare/report.html").find("gnuplot was not found") != std::string::npos);
+  CHECK(fs::exists(folder() / "bare/charts/small_tip_ux.csv"));
+  CHECK(!fs::exists(folder() / "bare/fields"));
+}
+
+TEST_CASE("a formulation that breaks is a result, and the others still run") {
+  std::string text = taut::test::good_scene + R"(
+[[run]]
+label = "breaks"
+formulation = "ul_basic"
+kernel = "sinc5"
+support_dx = 2.4
+lattice = "cell_centred"
+dx = 0.005
+material = "hypoelastic"
+
+[[run]]
+label = "after it"
+formulation = "tl_displacement"
+)";
+  text.replace(text.find("force = 1000.0"), 14, "force = 7000.0");
+  write("breaks.toml", text);
+  const Outcome outcome = compare("breaks.toml --out broken --no-fields");
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.status == 0);
+  const auto rows = lines_of(folder() / "broken/results.csv");
+  REQUIRE(rows.size() == 4);
+  CHECK(rows[1].find(",ok,") != std::string::npos);
+  CHECK(rows[2].find(",s,broke,") != std::string::npos);
+  CHECK(rows[3].find(",ok,") != std::string::npos);
+  CHECK(outcome.out.find("breaks: BROKE at t = ") != std::string::npos);
+  CHECK(outcome.out.find("particle") != std::string::npos);
+  const std::string report = content(folder() / "broken/report.html");
+  CHECK(report.find("Which broke, and when") != std::string::npos);
+}
+
+TEST_CASE("an output folder that cannot be made fails the run") {
+  write("good.toml", taut::test::good_scene);
+  write("a_file", "x");
+  const Outcome outcome = compare("good.toml --out a_file/below");
+  CHECK(outcome.status == 1);
+  CHECK(outcome.err.find("a_file") != std::string::npos);
+}
