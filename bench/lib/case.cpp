@@ -90,6 +90,7 @@ RunResult solve(Simulation<D>& simulation, const SolveSpec& spec, const Progress
     RelaxOptions options;
     options.tolerance = spec.tolerance;
     options.ramp_time = spec.ramp_time;
+    options.free_time = spec.free_time;
     options.max_steps = spec.max_steps;
     options.cfl = spec.cfl;
     options.progress = progress;

@@ -88,7 +88,7 @@ struct SolveSpec {
   std::string mode = "relax";
   double duration = 0;
   std::string integrator = "leapfrog";
-  double cfl = 0.6, max_step = 0, tolerance = 1e-6, ramp_time = 0;
+  double cfl = 0.6, max_step = 0, tolerance = 1e-6, ramp_time = 0, free_time = 0;
   std::int64_t max_steps = 10'000'000;
   int samples = 1000;  ///< dynamic: points of each history
   Place place;

@@ -36,7 +36,7 @@ const std::vector<SceneTable>& scene_tables() {
       {"history", "table", {"values"}},
       {"initial", "", {"on", "where", "velocity", "stretch"}},
       {"solve", "", {"mode", "cfl"}},
-      {"solve", "relax", {"tolerance", "ramp_time", "max_steps"}},
+      {"solve", "relax", {"tolerance", "ramp_time", "free_time", "max_steps"}},
       {"solve", "dynamic", {"duration", "integrator", "max_step", "samples"}},
       {"probe", "", {"name", "type", "measure", "only", "reference", "printed"}},
       {"probe", "displacement", {"at", "axis"}},

@@ -148,6 +148,7 @@ SolveSpec read_solve(const Node& node, const SolveSpec* base) {
   if (solve.mode == "relax") {
     solve.tolerance = reader.number("tolerance", Range{0, 1, true, true}, solve.tolerance);
     solve.ramp_time = reader.number("ramp_time", Range::non_negative(), solve.ramp_time);
+    solve.free_time = reader.number("free_time", Range::non_negative(), solve.free_time);
     solve.max_steps = reader.integer("max_steps", 1, 1'000'000'000'000LL, solve.max_steps);
   } else {
     if (!base || base->mode != "dynamic" || reader.has("duration"))
