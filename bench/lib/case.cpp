@@ -227,7 +227,7 @@ std::vector<Row> CaseResult::rows(int threads) const {
     row.kernel = run->method.kernel;
     row.support_dx = run->method.support_dx;
     if (dx > 0) row.dx = dx;
-    row.precision = run->method.pair_precision == PairPrecision::single_precision ? "single" : "double";
+    row.precision = to_string(run->method.pair_precision);
     row.integrator = run->solve.mode == "relax" ? "relax" : run->solve.integrator;
     row.threads = threads;
     row.quantity = probe.name;

@@ -15,9 +15,7 @@ Method read_method(const TableReader& reader) {
   // Below one spacing no lattice particle has a neighbour; beyond ten a list no longer fits any memory.
   m.support_dx = reader.number("support_dx", Range{1, 10, true, false}, m.support_dx);
   m.neighbours = reader.choice("neighbours", names().neighbours, m.neighbours);
-  m.pair_precision = reader.choice("pair_precision", {"single", "double"}, "single") == "single"
-                         ? PairPrecision::single_precision
-                         : PairPrecision::double_precision;
+  m.pair_precision = pair_precision(reader.choice("pair_precision", pair_precision_names(), "automatic"));
   m.zero_energy_control = reader.number("zero_energy_control", Range::non_negative(), m.zero_energy_control);
   m.viscosity = reader.number("viscosity", Range::non_negative(), m.viscosity);
   m.skin = reader.number("skin", Range{0, 2, false, false}, m.skin);

@@ -6,12 +6,17 @@
 #include <cmath>
 #include <taut/core/error.hpp>
 #include <taut/core/operators.hpp>
+#include <taut/internal/block_dictionary.hpp>
 #include <taut/internal/compatible_operator.hpp>
+#include <taut/internal/pair_passes.hpp>
+#include <taut/internal/shared_vectors.hpp>
 #include <utility>
 
 namespace taut {
 
 namespace {
+
+constexpr Index chunk_slices = 512;
 
 template <int D>
 std::string describe(const Vec<D>& X) {
@@ -22,10 +27,11 @@ std::string describe(const Vec<D>& X) {
 
 // G_ab = V_a V_b grad W_ab for all slots; antisymmetric to the last bit, because every factor is.
 template <int D, class Real>
-void fill_vectors(const Particles<D>& p, const PairList& pairs, const Kernel& kernel, double h, AlignedArray<Real>& out) {
+void fill_vectors(const Particles<D>& p, const PairList& pairs, const Kernel& kernel, double h,
+                  AlignedArray<Real>& out) {
   out = AlignedArray<Real>(static_cast<std::size_t>(pairs.slots()) * D * lanes);
   const double* V = p.V.component(0);
-#pragma omp parallel for schedule(dynamic, 64)
+#pragma omp parallel for schedule(static)
   for (Index s = 0; s < pairs.slices(); ++s)
     for (Index a = s * lanes; a < std::min<Index>((s + 1) * lanes, pairs.particles()); ++a)
       pairs.for_each(a, [&](Index b, std::int64_t k, int lane) {
@@ -37,112 +43,210 @@ void fill_vectors(const Particles<D>& p, const PairList& pairs, const Kernel& ke
       });
 }
 
+// The sums that a slice's matrices are made of.
+template <int D>
+struct Moments {
+  Pack outer[D * D];  // sum_b X_ab (x) G_ab
+  Pack sum[D];        // sum_b G_ab
+  Pack scale;         // sum_b |X_ab| |G_ab|
+};
+
+template <int D, class Payload>
+void moments_of_slice(Index s, const PairList& pairs, const Payload& payload, const Columns<D>& X,
+                      const double* V, Moments<D>& m) {
+  Pack Xi[D];
+  for (int d = 0; d < D; ++d) Xi[d] = load(X.c[d] + s * lanes);
+  for (auto& c : m.outer) c = pack(0);
+  for (auto& c : m.sum) c = pack(0);
+  m.scale = pack(0);
+  const auto vectors = payload.slice(s);
+  for_slots(pairs, s, [&](std::int64_t k, auto&& at) {
+    Pack g[D], Xab[D], gg = pack(0), XX = pack(0);
+    vectors.get(k, at, g);
+    const PackMask pair = lanes_of(pairs.mask(k));
+    for (int d = 0; d < D; ++d) {
+      Xab[d] = pair ? at(X.c[d]) - Xi[d] : pack(0);
+      if constexpr (!Payload::has_volumes) g[d] *= at(V);
+      gg += g[d] * g[d];
+      XX += Xab[d] * Xab[d];
+    }
+    for (int e = 0; e < D; ++e) {
+      for (int d = 0; d < D; ++d) m.outer[d * D + e] += Xab[d] * g[e];
+      m.sum[e] += g[e];
+    }
+    for (int l = 0; l < lanes; ++l) m.scale[l] += std::sqrt(gg[l] * XX[l]);
+  });
+}
+
 template <int D>
 [[noreturn]] void throw_singular(const Particles<D>& p, const PairList& pairs, Index a) {
   Index neighbours = 0;
   pairs.for_each(a, [&](Index, std::int64_t, int) { ++neighbours; });
-  throw InputError(fmt::format(
-      "corrected operator: the correction matrix of particle {} at {} is singular: its {} neighbour(s) do not span {} "
-      "dimension(s). Enlarge support_dx, refine dx, or thicken the body there",
-      p.id[a], describe<D>(p.X.template vec<D>(a)), neighbours, D));
+  throw InputError(
+      fmt::format("corrected operator: the correction matrix of particle {} at {} is singular: its {} "
+                  "neighbour(s) do not span {} "
+                  "dimension(s). Enlarge support_dx, refine dx, or thicken the body there",
+                  p.id[a], describe<D>(p.X.template vec<D>(a)), neighbours, D));
 }
 
-// M_a = I / V_a, and what the gradient of X lacks to be I.
+// Matrices of one slice as the loops want them: M, then the sums.
 template <int D>
-void leave_uncorrected(const Particles<D>& p, const PairList& pairs, PairOperator<D>& op) {
-  op.F0 = Field(static_cast<std::size_t>(p.total), D * D);
-#pragma omp parallel for schedule(dynamic, 512)
-  for (Index a = 0; a < p.n; ++a) {
-    const double V = p.V.component(0)[a];
-    Mat<D> gradient = Mat<D>::Zero();
-    pairs.for_each(a, [&](Index b, std::int64_t k, int lane) {
-      gradient += (p.X.template vec<D>(b) - p.X.template vec<D>(a)) * op.vector(k, lane).transpose();
-    });
-    op.M.template set_mat<D>(a, Mat<D>::Identity() / V);
-    op.F0.template set_mat<D>(a, Mat<D>::Identity() - gradient / V);
+using Coefficients = Pack[D * D + D];
+
+// False where the matrix of the particle in lane l is singular.
+template <int D>
+bool invert_moment(const Moments<D>& m, int l, Coefficients<D>& out) {
+  Mat<D> moment;  // sum_b G_ab (x) X_ab
+  for (int c = 0; c < D * D; ++c) moment(c % D, c / D) = m.outer[c][l];
+  // Relative to the size it would have with neighbours all around: 1e-7 of it is rank deficiency in single
+  // precision.
+  if (!(std::abs(moment.determinant()) > 1e-7 * std::pow(m.scale[l] / D, D))) return false;
+  const Mat<D> inverse = moment.inverse();
+  for (int c = 0; c < D * D; ++c) out[c][l] = inverse(c / D, c % D);
+  return true;
+}
+
+template <int D>
+BlockKey key_of(const Coefficients<D>& c, const Pack& V, double support) {
+  const auto quantised = [](double v) { return static_cast<std::uint64_t>(std::llround(v / alike)); };
+  BlockKey key;
+  for (int l = 0; l < lanes; ++l) {
+    for (int k = 0; k < D * D; ++k) key.add(quantised(c[k][l]));
+    for (int k = D * D; k < D * D + D; ++k) key.add(quantised(c[k][l] * V[l] * support));
   }
+  return key;
 }
 
-// M_a = [sum_b G_ab (x) X_ab]^-1 of the pair vectors as stored.
-template <int D>
-void correct(const Particles<D>& p, const PairList& pairs, PairOperator<D>& op) {
+// M and the sums of all slices, in fields or, where vectors are shared, in a dictionary.
+template <int D, class Payload>
+void fill_matrices(bool corrected, const Particles<D>& p, const PairList& pairs, double support,
+                   const Payload& payload, PairOperator<D>& op) {
+  const auto total = static_cast<std::size_t>(p.total);
+  const Index slices = static_cast<Index>(padded(static_cast<std::size_t>(p.n)) / lanes);
+  const Index chunks = (slices + chunk_slices - 1) / chunk_slices;
+  const bool shared = op.precision == PairPrecision::shared;
+  BlockDictionary dictionary(shared ? static_cast<std::size_t>(slices) : 0, static_cast<std::size_t>(chunks),
+                             (D * D + D) * lanes);
+  if (!shared) {
+    op.M = Field(total, D * D);
+    op.sum = Field(total, D);
+  }
+  if (!corrected) op.F0 = Field(total, D * D);
+  const Columns<D> X(p.X);
+  const double* V = p.V.component(0);
   std::atomic<Index> singular{p.n};
-#pragma omp parallel for schedule(dynamic, 512)
-  for (Index a = 0; a < p.n; ++a) {
-    Mat<D> moment = Mat<D>::Zero();
-    double scale = 0;
-    pairs.for_each(a, [&](Index b, std::int64_t k, int lane) {
-      const Vec<D> g = op.vector(k, lane);
-      const Vec<D> X = p.X.template vec<D>(b) - p.X.template vec<D>(a);
-      moment += g * X.transpose();
-      scale += g.norm() * X.norm();
-    });
-    // Relative to the size it would have with neighbours all around: 1e-9 of it is rank deficiency in single precision.
-    if (!(std::abs(moment.determinant()) > 1e-7 * std::pow(scale / D, D))) {
-      Index seen = singular.load();
-      while (a < seen && !singular.compare_exchange_weak(seen, a)) {
+#pragma omp parallel for schedule(static) if (chunks > 1)
+  for (Index chunk = 0; chunk < chunks; ++chunk)
+    for (Index s = chunk * chunk_slices; s < std::min((chunk + 1) * chunk_slices, slices); ++s) {
+      Moments<D> m;
+      moments_of_slice<D>(s, pairs, payload, X, V, m);
+      Coefficients<D> c{};
+      for (int l = 0; l < std::min<Index>(lanes, p.n - s * lanes); ++l) {
+        const Index a = s * lanes + l;
+        const double factor = Payload::has_volumes ? 1 / V[a] : 1;
+        for (int d = 0; d < D; ++d) c[D * D + d][l] = Payload::has_volumes ? m.sum[d][l] : m.sum[d][l] / V[a];
+        if (!corrected) {
+          for (int k = 0; k < D * D; ++k) {
+            const double one = k % (D + 1) == 0;
+            c[k][l] = one * factor;
+            op.F0.component(k)[a] = one - factor * m.outer[k][l];
+          }
+        } else if (!invert_moment<D>(m, l, c)) {
+          Index seen = singular.load();
+          while (a < seen && !singular.compare_exchange_weak(seen, a)) {
+          }
+        }
       }
-      continue;
+      if (shared) {
+        dictionary.put(static_cast<std::size_t>(chunk), static_cast<std::size_t>(s),
+                       key_of<D>(c, load(V + s * lanes), support), [&](double* block) {
+                         for (int k = 0; k < D * D + D; ++k) store(block + k * lanes, c[k]);
+                       });
+      } else {
+        for (int k = 0; k < D * D; ++k) store(op.M.component(k) + s * lanes, c[k]);
+        for (int d = 0; d < D; ++d) store(op.sum.component(d) + s * lanes, c[D * D + d]);
+      }
     }
-    op.M.template set_mat<D>(a, moment.inverse());
-  }
   if (singular.load() < p.n) throw_singular(p, pairs, singular.load());
+  if (shared) dictionary.finish(op.slice_code, op.slice_blocks);
+}
+
+AlignedArray<float> rounded(const AlignedArray<double>& values) {
+  AlignedArray<float> out(values.size());
+  std::transform(values.begin(), values.end(), out.begin(), [](double v) { return static_cast<float>(v); });
+  return out;
+}
+
+// What `automatic` means for these particles.
+template <int D>
+PairPrecision resolve(const Method& method, const Particles<D>& p, const PairList& pairs, double support) {
+  const bool compatible = method.operators == "compatible";
+  if (method.pair_precision == PairPrecision::automatic) {
+    // A slot that nothing is shared with costs twice the bytes of one in single precision.
+    constexpr double worthwhile = 0.4;
+    return !compatible && distinct_fraction<D>(p, pairs, support) < worthwhile
+               ? PairPrecision::shared
+               : PairPrecision::single_precision;
+  }
+  if (compatible &&
+      (method.pair_precision == PairPrecision::shared || method.pair_precision == PairPrecision::recomputed))
+    throw InputError(
+        fmt::format("the pair vectors of compatible operators cannot be {}: choose single or double",
+                    to_string(method.pair_precision)));
+  return method.pair_precision;
 }
 
 }  // namespace
 
 std::vector<std::string> operator_names() { return {"standard", "corrected", "compatible"}; }
 
-namespace {
-AlignedArray<float> rounded(const AlignedArray<double>& values) {
-  AlignedArray<float> out(values.size());
-  std::transform(values.begin(), values.end(), out.begin(), [](double v) { return static_cast<float>(v); });
-  return out;
-}
-}  // namespace
-
 template <int D>
-PairOperator<D> make_operator(const Method& method, const Particles<D>& p, const PairList& pairs, const Kernel& kernel,
-                              double h) {
+PairOperator<D> make_operator(const Method& method, const Particles<D>& p, const PairList& pairs,
+                              const Kernel& kernel, double h) {
   const std::string& name = method.operators;
   const auto names = operator_names();
   if (std::find(names.begin(), names.end(), name) == names.end())
     throw InputError(fmt::format("unknown operators \"{}\"; valid: {}", name, join_names(names)));
-  const bool single = method.pair_precision == PairPrecision::single_precision, compatible = name == "compatible";
+  const bool compatible = name == "compatible";
+  const double support = kernel.radius_factor() * h;
+  const PairPrecision precision = resolve<D>(method, p, pairs, support);
+
   PairOperator<D> op;
-  op.M = Field(static_cast<std::size_t>(p.total), D * D);
-  op.precision = single && !compatible ? PairPrecision::single_precision : PairPrecision::double_precision;
-  if (op.precision == PairPrecision::single_precision)
-    fill_vectors(p, pairs, kernel, h, op.vectors_f);
-  else
-    fill_vectors(p, pairs, kernel, h, op.vectors_d);
-  if (name == "standard")
-    leave_uncorrected(p, pairs, op);
-  else
-    correct(p, pairs, op);
+  op.precision = compatible ? PairPrecision::double_precision : precision;
+  switch (op.precision) {
+    case PairPrecision::double_precision:
+      fill_vectors(p, pairs, kernel, h, op.vectors_d);
+      break;
+    case PairPrecision::shared:
+      share_vectors<D>(p, pairs, kernel, h, op);
+      break;
+    case PairPrecision::recomputed:
+      op.table = std::make_shared<const KernelTable>(kernel, h);
+      break;
+    default:
+      fill_vectors(p, pairs, kernel, h, op.vectors_f);
+  }
+  const auto make_matrices = [&] {
+    with_payload<D>(op, pairs, p.X, [&](const auto& payload) {
+      fill_matrices<D>(name != "standard", p, pairs, support, payload, op);
+    });
+  };
+  make_matrices();
   if (compatible) {
     make_compatible(p, pairs, kernel, h, method.compatible_iterations, op);
-    if (single) {
+    if (precision == PairPrecision::single_precision) {
       op.vectors_f = rounded(std::exchange(op.vectors_d, {}));
       op.adjoint_f = rounded(std::exchange(op.adjoint_d, {}));
-      op.precision = PairPrecision::single_precision;
+      op.precision = precision;
     }
-    correct(p, pairs, op);  // linear exactness of the vectors as stored
-  }
-
-  op.sum = Field(static_cast<std::size_t>(p.total), D);
-#pragma omp parallel for schedule(dynamic, 512)
-  for (Index a = 0; a < p.n; ++a) {
-    Vec<D> sum = Vec<D>::Zero();
-    pairs.for_each(a, [&](Index, std::int64_t k, int lane) { sum += op.vector(k, lane); });
-    op.sum.template set_vec<D>(a, sum);
+    make_matrices();  // linear exactness of the vectors as stored
   }
   return op;
 }
 
-#define TAUT_INSTANTIATE(D)                                                                                          \
-  template PairOperator<D> make_operator<D>(const Method&, const Particles<D>&, const PairList&, const Kernel&, \
-                                            double);
+#define TAUT_INSTANTIATE(D)                                                                      \
+  template PairOperator<D> make_operator<D>(const Method&, const Particles<D>&, const PairList&, \
+                                            const Kernel&, double);
 TAUT_INSTANTIATE(1)
 TAUT_INSTANTIATE(2)
 TAUT_INSTANTIATE(3)

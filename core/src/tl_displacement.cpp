@@ -17,8 +17,8 @@ namespace taut {
 
 namespace {
 
-/// Displacement-based total Lagrangian form (Kistner 2010 ch. 5; Tran-Duc et al. 2023, 2.3): F from positions, P from the
-/// material, forces by the adjoint of the gradient.
+/// Displacement-based total Lagrangian form (Kistner 2010 ch. 5; Tran-Duc et al. 2023, 2.3): F from
+/// positions, P from the material, forces by the adjoint of the gradient.
 template <int D>
 class TlDisplacement final : public Formulation<D> {
   using Base = Formulation<D>;
@@ -27,13 +27,17 @@ class TlDisplacement final : public Formulation<D> {
 
  public:
   explicit TlDisplacement(const FormulationSetup<D>& setup)
-      : Base(setup), groups_(p_), kernel_(setup.method.kernel, D), h_(setup.method.support_dx * p_.dx / kernel_.radius_factor()) {
+      : Base(setup),
+        groups_(p_),
+        kernel_(setup.method.kernel, D),
+        h_(setup.method.support_dx * p_.dx / kernel_.radius_factor()) {
     for (const auto& material : p_.materials) {
       const auto* hyperelastic = dynamic_cast<const Hyperelastic<D>*>(material.get());
       if (!hyperelastic)
-        throw InputError(fmt::format("tl_displacement needs a hyperelastic material; \"{}\" gives stress rates. Valid: "
-                                     "linear_elastic, st_venant_kirchhoff, corotated_svk, neo_hookean",
-                                     material->name()));
+        throw InputError(
+            fmt::format("tl_displacement needs a hyperelastic material; \"{}\" gives stress rates. Valid: "
+                        "linear_elastic, st_venant_kirchhoff, corotated_svk, neo_hookean",
+                        material->name()));
       materials_.push_back(hyperelastic);
     }
     const PointView<D> points{columns(p_.X), p_.total};
@@ -90,23 +94,27 @@ class TlDisplacement final : public Formulation<D> {
     return c;
   }
 
-  TAUT_INLINE void gradient(Index s, const Field& x, Pack (&F)[D * D]) const {
-    const Columns<D> xc(x);
-    const Columns<D * D> M(op_.M);
-    if (op_.precision == PairPrecision::single_precision)
-      gradient_of_slice<D>(s, pairs_, op_.vectors_f.data(), xc, M, F);
-    else
-      gradient_of_slice<D>(s, pairs_, op_.vectors_d.data(), xc, M, F);
+  // F without F0 of slice s, outside the step's loops.
+  void gradient(Index s, const Field& x, Pack (&F)[D * D]) const {
+    with_payload<D>(op_, pairs_, p_.X, [&](const auto& payload) {
+      gradient_of_slice<D>(s, pairs_, payload, Columns<D>(x), p_.V.component(0), {op_, s}, F);
+    });
+  }
+
+  Index first_inverted(Index first, Index last, const double* F) const;
+  void undeform_padding(Index s, Pack (&F)[D * D]) const {
+    for (int l = p_.n - s * lanes; l < lanes; ++l)
+      for (int k = 0; k < D * D; ++k) F[k][l] = k % (D + 1) == 0;
   }
 
   TAUT_INLINE void add_offset(Index s, Pack (&F)[D * D]) const {
     if (op_.F0.empty()) return;
     for (int k = 0; k < D * D; ++k) F[k] += load(op_.F0.component(k) + s * lanes);
   }
-  template <class Real>
-  void gradient_pass(const Real* vectors);
-  template <class Real>
-  void force_pass(const Real* adjoint);
+  template <class Payload>
+  void gradient_pass(const Payload& payload);
+  template <class Payload>
+  void force_pass(const Payload& payload);
   double largest_frequency();
 
   MaterialGroups groups_;
@@ -122,10 +130,9 @@ class TlDisplacement final : public Formulation<D> {
 };
 
 template <int D>
-template <class Real>
-void TlDisplacement<D>::gradient_pass(const Real* vectors) {
+template <class Payload>
+void TlDisplacement<D>::gradient_pass(const Payload& payload) {
   const Columns<D> x(p_.x);
-  const Columns<D * D> M(op_.M);
   const double* V = p_.V.component(0);
   double* Q[D * D];
   for (int c = 0; c < D * D; ++c) Q[c] = Q_.component(c);
@@ -138,19 +145,17 @@ void TlDisplacement<D>::gradient_pass(const Real* vectors) {
     for (Index c = 0; c < groups_.chunks(); ++c) {
       alignas(64) double F[D * D * chunk];
       const Index first = groups_.first_slice(c), last = groups_.last_slice(c);
+      PackMask bad{};
       for (Index s = first; s < last; ++s) {
         Pack f[D * D];
-        gradient_of_slice<D>(s, pairs_, vectors, x, M, f);
+        gradient_of_slice<D>(s, pairs_, payload, x, V, {op_, s}, f);
         add_offset(s, f);
-        if ((s + 1) * lanes > p_.n)  // lanes behind the last particle stay undeformed
-          for (int l = p_.n - s * lanes; l < lanes; ++l)
-            for (int k = 0; k < D * D; ++k) f[k][l] = k % (D + 1) == 0;
-        const Pack J = mine.add(f);
-        for (int l = 0; l < lanes; ++l)
-          if (!(J[l] > 0)) inverted = std::min<Index>(inverted, s * lanes + l);
+        if ((s + 1) * lanes > p_.n) undeform_padding(s, f);
+        bad |= ~(mine.add(f) > 0);
         for (int k = 0; k < D * D; ++k) store(F + k * chunk + (s - first) * lanes, f[k]);
         if (control_) control_->keep(s, f);
       }
+      if (any(bad)) inverted = std::min(inverted, first_inverted(first, last, F));
       alignas(64) double P_of_chunk[D * D * chunk];
       const int n = (last - first) * lanes;
       groups_.template call<D * D>(c, P_of_chunk, [&](std::size_t m, double* P) {
@@ -159,11 +164,12 @@ void TlDisplacement<D>::gradient_pass(const Real* vectors) {
       for (Index s = first; s < last; ++s) {
         const Index i = s * lanes;
         const double* P = P_of_chunk + (s - first) * lanes;
+        const SliceCoefficients<D> of(op_, s);
         const Pack Vi = load(V + i);
         for (int d = 0; d < D; ++d)
           for (int e = 0; e < D; ++e) {
-            Pack q = load(P + (d * D) * chunk) * load(M.c[e] + i);
-            for (int j = 1; j < D; ++j) q += load(P + (d * D + j) * chunk) * load(M.c[j * D + e] + i);
+            Pack q = load(P + (d * D) * chunk) * of.matrix(e);
+            for (int j = 1; j < D; ++j) q += load(P + (d * D + j) * chunk) * of.matrix(j * D + e);
             store(Q[d * D + e] + i, q * Vi);
           }
       }
@@ -173,25 +179,39 @@ void TlDisplacement<D>::gradient_pass(const Real* vectors) {
   }
   stretch_ = extremes.bounds();
   if (inverted < p_.n && !this->failure_)
-    this->failure_ = Failure{p_.x.template vec<D>(inverted).allFinite() ? "J <= 0" : "not a number", inverted};
+    this->failure_ =
+        Failure{p_.x.template vec<D>(inverted).allFinite() ? "J <= 0" : "not a number", inverted};
+}
+
+// The first particle of a chunk whose J is not positive, or n.
+template <int D>
+Index TlDisplacement<D>::first_inverted(Index first, Index last, const double* F) const {
+  for (Index s = first; s < last; ++s) {
+    Pack f[D * D];
+    for (int k = 0; k < D * D; ++k) f[k] = load(F + k * chunk + (s - first) * lanes);
+    const Pack J = StretchExtremes<D>().add(f);
+    for (int l = 0; l < lanes; ++l)
+      if (!(J[l] > 0)) return s * lanes + l;
+  }
+  return p_.n;
 }
 
 template <int D>
-template <class Real>
-void TlDisplacement<D>::force_pass(const Real* adjoint) {
+template <class Payload>
+void TlDisplacement<D>::force_pass(const Payload& payload) {
   const Columns<D * D> Q(Q_);
-  const Columns<D> sum(op_.sum);
-  const double* m = p_.m.component(0);
+  const double *m = p_.m.component(0), *V = p_.V.component(0);
   double* a[D];
   for (int d = 0; d < D; ++d) a[d] = p_.a.component(d);
 #pragma omp parallel for schedule(static) if (p_.n > parallel_from)
   for (Index s = 0; s < groups_.slices(); ++s) {
     Pack force[D];
-    force_of_slice<D>(s, pairs_, adjoint, Q, sum, force);
+    force_of_slice<D>(s, pairs_, payload, Q, V, {op_, s}, force);
     if (control_) control_->add_to(s, p_.x, force);
     const Index i = s * lanes;
+    const Pack per_mass = 1 / load(m + i);
     for (int d = 0; d < D; ++d) {
-      Pack ad = force[d] / load(m + i);
+      Pack ad = force[d] * per_mass;
       if (i + lanes > p_.n)
         for (int l = p_.n - i; l < lanes; ++l) ad[l] = 0;
       store(a[d] + i, ad);
@@ -202,13 +222,14 @@ void TlDisplacement<D>::force_pass(const Real* adjoint) {
 template <int D>
 void TlDisplacement<D>::update_accelerations(double t) {
   if (!p_.mirror.empty()) p_.mirror.positions(p_.x);
-  const bool single = op_.precision == PairPrecision::single_precision;
-  single ? gradient_pass(op_.vectors_f.data()) : gradient_pass(op_.vectors_d.data());
-  if (!p_.mirror.empty()) {
-    p_.mirror.tensors(Q_);
-    if (control_) p_.mirror.tensors(control_->deformation());
-  }
-  single ? force_pass(op_.adjoint(op_.vectors_f.data())) : force_pass(op_.adjoint(op_.vectors_d.data()));
+  with_payload<D>(op_, pairs_, p_.X, [&](const auto& payload) {
+    gradient_pass(payload);
+    if (!p_.mirror.empty()) {
+      p_.mirror.tensors(Q_);
+      if (control_) p_.mirror.tensors(control_->deformation());
+    }
+    force_pass(payload);
+  });
   this->finish_accelerations(t);
 }
 
@@ -229,24 +250,29 @@ double TlDisplacement<D>::strain_energy() const {
       for (int k = 0; k < D * D; ++k) store(F + k * chunk + (s - first) * lanes, f[k]);
     }
     const int n = (last - first) * lanes;
-    groups_.template call<1>(c, e, [&](std::size_t m, double* out) { materials_[m]->stress({n, chunk, F, P, out}); });
+    groups_.template call<1>(c, e, [&](std::size_t m, double* out) {
+      materials_[m]->stress({n, chunk, F, P, out});
+    });
     for (Index i = first * lanes; i < std::min<Index>(last * lanes, p_.n); ++i)
-      energy[static_cast<std::size_t>(c)] += p_.modelled_share(i) * p_.V.component(0)[i] * e[i - first * lanes];
+      energy[static_cast<std::size_t>(c)] +=
+          p_.modelled_share(i) * p_.V.component(0)[i] * e[i - first * lanes];
   }
   double total = 0;
   for (const double e : energy) total += e;
   return total;
 }
 
-// Highest frequency [rad/s] of the body at rest, by power iteration on M^-1 G^T (rho c_p^2) V G: an elastic body has no
-// mode above that of a scalar medium of its pressure-wave modulus, whatever the operator and the cloud.
+// Highest frequency [rad/s] of the body at rest, by power iteration on M^-1 G^T (rho c_p^2) V G: an elastic
+// body has no mode above that of a scalar medium of its pressure-wave modulus, whatever the operator and the
+// cloud.
 template <int D>
 double TlDisplacement<D>::largest_frequency() {
   constexpr int iterations = 30;
   Field y(static_cast<std::size_t>(p_.total), D);
   for (Index i = 0; i < p_.n; ++i)
     for (int d = 0; d < D; ++d) {
-      // Any start with a part in the highest mode will do; a multiplicative hash gives every frequency its share.
+      // Any start with a part in the highest mode will do; a multiplicative hash gives every frequency its
+      // share.
       const auto hash = static_cast<std::uint32_t>(i * D + d + 1) * 2654435761u;
       y.component(d)[i] = static_cast<double>(hash) / 4294967296.0 - 0.5;
     }
@@ -256,48 +282,74 @@ double TlDisplacement<D>::largest_frequency() {
     stiffness.component(0)[i] = p_.V.component(0)[i] * m->density() * m->wave_speed() * m->wave_speed();
   }
 
-  const Columns<D * D> M(op_.M), Q(Q_);
-  const Columns<D> sum(op_.sum);
-  const bool single = op_.precision == PairPrecision::single_precision;
+  const Columns<D> yc(y);
+  const Columns<D * D> Q(Q_);
+  const double *V = p_.V.component(0), *m = p_.m.component(0);
+  constexpr Index block = 512;  // slices; sums are made block by block, whatever the threads
+  const Index blocks = (groups_.slices() + block - 1) / block;
+  struct Products {
+    double yy = 0, ya = 0, aa = 0;  // in the inner product of the masses
+  };
+  std::vector<Products> partial(static_cast<std::size_t>(blocks));
   double eigenvalue = 0;
   for (int it = 0; it < iterations; ++it) {
     if (!p_.mirror.empty()) p_.mirror.vectors(y);
+    with_payload<D>(op_, pairs_, p_.X, [&](const auto& payload) {
 #pragma omp parallel for schedule(static) if (p_.n > parallel_from)
-    for (Index s = 0; s < groups_.slices(); ++s) {
-      Pack H[D * D];
-      gradient(s, y, H);
-      const Index i = s * lanes;
-      for (int d = 0; d < D; ++d)
-        for (int e = 0; e < D; ++e) {
-          Pack q = H[d * D] * load(M.c[e] + i);
-          for (int j = 1; j < D; ++j) q += H[d * D + j] * load(M.c[j * D + e] + i);
-          store(Q_.component(d * D + e) + i, q * load(stiffness.component(0) + i));
-        }
-    }
-    if (!p_.mirror.empty()) p_.mirror.tensors(Q_);
-#pragma omp parallel for schedule(static) if (p_.n > parallel_from)
-    for (Index s = 0; s < groups_.slices(); ++s) {
-      Pack force[D];
-      if (single)
-        force_of_slice<D>(s, pairs_, op_.adjoint(op_.vectors_f.data()), Q, sum, force);
-      else
-        force_of_slice<D>(s, pairs_, op_.adjoint(op_.vectors_d.data()), Q, sum, force);
-      for (int d = 0; d < D; ++d)
-        for (int l = 0; l < lanes && s * lanes + l < p_.n; ++l)
-          p_.a.component(d)[s * lanes + l] = force[d][l] / p_.m.component(0)[s * lanes + l];
-    }
-    double yy = 0, ya = 0, aa = 0;  // in the inner product of the masses
-    for (Index i = 0; i < p_.n; ++i)
-      for (int d = 0; d < D; ++d) {
-        const double m = p_.m.component(0)[i], yi = y.component(d)[i], ai = -p_.a.component(d)[i];
-        yy += m * yi * yi;
-        ya += m * yi * ai;
-        aa += m * ai * ai;
+      for (Index s = 0; s < groups_.slices(); ++s) {
+        const SliceCoefficients<D> of(op_, s);
+        Pack H[D * D];
+        gradient_of_slice<D>(s, pairs_, payload, yc, V, of, H);
+        const Pack factor = load(stiffness.component(0) + s * lanes);
+        for (int d = 0; d < D; ++d)
+          for (int e = 0; e < D; ++e) {
+            Pack q = H[d * D] * of.matrix(e);
+            for (int j = 1; j < D; ++j) q += H[d * D + j] * of.matrix(j * D + e);
+            store(Q_.component(d * D + e) + s * lanes, q * factor);
+          }
       }
-    eigenvalue = yy > 0 && ya > 0 ? std::max(ya / yy, std::sqrt(aa / yy)) : eigenvalue;
-    const double scale = aa > 0 ? 1 / std::sqrt(aa) : 0;
-    for (int d = 0; d < D; ++d)
-      for (Index i = 0; i < p_.n; ++i) y.component(d)[i] = -p_.a.component(d)[i] * scale;
+      if (!p_.mirror.empty()) p_.mirror.tensors(Q_);
+#pragma omp parallel for schedule(static) if (p_.n > parallel_from)
+      for (Index b = 0; b < blocks; ++b) {
+        Pack yy = pack(0), ya = pack(0), aa = pack(0);
+        for (Index s = b * block; s < std::min((b + 1) * block, groups_.slices()); ++s) {
+          Pack force[D];
+          force_of_slice<D>(s, pairs_, payload, Q, V, {op_, s}, force);
+          const Index i = s * lanes;
+          const Pack mass = load(m + i);
+          for (int d = 0; d < D; ++d) {
+            Pack ad = -force[d] / mass, yd = load(yc.c[d] + i);
+            if (i + lanes > p_.n)
+              for (int l = p_.n - i; l < lanes; ++l) ad[l] = yd[l] = 0;
+            yy += mass * yd * yd;
+            ya += mass * yd * ad;
+            aa += mass * ad * ad;
+            store(p_.a.component(d) + i, ad);
+          }
+        }
+        Products sums;
+        for (int l = 0; l < lanes; ++l) {
+          sums.yy += yy[l];
+          sums.ya += ya[l];
+          sums.aa += aa[l];
+        }
+        partial[static_cast<std::size_t>(b)] = sums;
+      }
+    });
+    Products sums;
+    for (const Products& part : partial) {
+      sums.yy += part.yy;
+      sums.ya += part.ya;
+      sums.aa += part.aa;
+    }
+    if (sums.yy > 0 && sums.ya > 0) eigenvalue = std::max(sums.ya / sums.yy, std::sqrt(sums.aa / sums.yy));
+    const double scale = sums.aa > 0 ? 1 / std::sqrt(sums.aa) : 0;
+    for (int d = 0; d < D; ++d) {
+      double* to = y.component(d);
+      const double* from = p_.a.component(d);
+#pragma omp parallel for simd schedule(static) if (p_.n > parallel_from)
+      for (Index i = 0; i < p_.n; ++i) to[i] = from[i] * scale;
+    }
   }
   std::fill(p_.a.flat().begin(), p_.a.flat().end(), 0.0);
   if (control_) eigenvalue += control_->largest_eigenvalue(pairs_);

@@ -31,7 +31,9 @@ struct Discretised {
   PairList pairs;
   PairOperator<D> op;
 
-  Discretised(const Cloud<D>& cloud, const Method& method) {
+  Discretised(const Cloud<D>& cloud, Method method) {
+    if (method.pair_precision == PairPrecision::automatic)
+      method.pair_precision = PairPrecision::single_precision;
     const Kernel kernel(method.kernel, D);
     const double support = method.support_dx * cloud.dx;
     const std::shared_ptr<const Material<D>> material =

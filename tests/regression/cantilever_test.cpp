@@ -23,6 +23,20 @@ TEST_CASE("cantilever: the tip error of corrected operators falls with the spaci
   }
 }
 
+TEST_CASE("cantilever: how pair vectors are kept does not move the tip") {
+  const auto tip = [](PairPrecision precision) {
+    Method method;
+    method.pair_precision = precision;
+    const auto outcome = solve({.body = Body::cantilever, .load = -250, .method = method, .solve = {.tolerance = 1e-9}});
+    REQUIRE(outcome.result.status == Status::ok);
+    return outcome.tip;
+  };
+  const Vec<2> exact = tip(PairPrecision::double_precision);
+  CHECK((tip(PairPrecision::single_precision) - exact).norm() < 1e-5 * exact.norm());
+  CHECK((tip(PairPrecision::shared) - exact).norm() < 1e-7 * exact.norm());
+  CHECK((tip(PairPrecision::recomputed) - exact).norm() < 1e-7 * exact.norm());
+}
+
 TEST_CASE("cantilever: ul_basic holds a small sudden load and breaks under larger ones") {
   const auto drop = [](double load) {
     return solve({.body = Body::cantilever,

@@ -3,13 +3,28 @@
 /// The choices that make a discretisation of a body.
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace taut {
 
-/// Number type of the stored pair vectors. State and sums are always double.
-enum class PairPrecision { single_precision, double_precision };
+/// How the pair vectors of the total Lagrangian operators are kept. State and sums are always double.
+enum class PairPrecision {
+  single_precision,  ///< stored as floats: 4 D bytes a pair
+  double_precision,  ///< stored as doubles: 8 D bytes a pair
+  shared,  ///< in double, once for all slots of the pair list that are alike: next to nothing on a lattice
+  recomputed,  ///< from reference positions and a kernel table (1e-9) in every step: no bytes, more
+               ///< arithmetic
+  automatic    ///< `shared` where most slots are alike, else `single_precision`
+};
 
-/// Formulation, operators and their parameters. Names are those of the registries; each error lists the valid ones.
+/// "single", "double", "shared", "recomputed" or "automatic". \throws InputError naming the valid ones.
+PairPrecision pair_precision(std::string_view name);
+const char* to_string(PairPrecision precision);
+std::vector<std::string> pair_precision_names();
+
+/// Formulation, operators and their parameters. Names are those of the registries; each error lists the valid
+/// ones.
 struct Method {
   std::string formulation = "tl_displacement";
   std::string operators = "corrected";
@@ -17,7 +32,7 @@ struct Method {
   /// Support radius over particle spacing, R / dx.
   double support_dx = 1.5;
   std::string neighbours = "cell_list";
-  PairPrecision pair_precision = PairPrecision::single_precision;
+  PairPrecision pair_precision = PairPrecision::automatic;
 
   /// Conjugate-gradient iterations of the set-up of `compatible` operators.
   int compatible_iterations = 40;
@@ -25,8 +40,8 @@ struct Method {
   /// Pairwise zero-energy control of the total Lagrangian forms (Ganzenmueller 2015), 0 = absent.
   double zero_energy_control = 0;
 
-  /// Updated Lagrangian forms: Monaghan viscosity alpha (0 = absent), skin of the pair list over R, whether the velocity
-  /// gradient is linearly exact ("corrected") or plain ("standard").
+  /// Updated Lagrangian forms: Monaghan viscosity alpha (0 = absent), skin of the pair list over R, whether
+  /// the velocity gradient is linearly exact ("corrected") or plain ("standard").
   double viscosity = 0;
   double skin = 0.1;
   std::string velocity_gradient = "standard";

@@ -2,6 +2,7 @@
 /// \file
 /// Discrete gradient operators on a pair list.
 
+#include <memory>
 #include <string>
 #include <taut/core/fields.hpp>
 #include <taut/core/kernel.hpp>
@@ -12,48 +13,73 @@
 
 namespace taut {
 
-/// A gradient operator and its adjoint, in factored form: with one vector G_ab for each directed pair and one matrix M_a for each particle,
+class KernelTable;
+
+/// A gradient operator and its adjoint, in factored form: with one vector G_ab for each directed pair and one
+/// matrix M_a for each particle,
 ///   F_a = [sum_b x_ab (x) G_ab] M_a^T + F0_a,   x_ab = x_b - x_a,
-///   f_a = sum_b (Q_a G_ab - Q_b G_ba),     Q_a = V_a P_a M_a,
-/// where, for `standard` and `corrected`, G_ab = V_a V_b grad W_ab = -G_ba and M_a = I / V_a or K_a / V_a; the vectors of
-/// `compatible` are not antisymmetric, so -G_ba is stored beside G_ab. F0 is absent where
-/// linear fields are exact; for `standard` it makes F = I + grad u, so that the body is free of stress at rest. The
-/// force is the exact adjoint of the gradient, so linear momentum is kept to round-off.
-/// Lane l of slot k holds component d of G at vectors[(k * D + d) * lanes + l]; zero where the slot has no pair.
+///   f_a = sum_b (Q_a + Q_b) G_ab,        Q_a = V_a P_a M_a,
+/// where G_ab = V_a V_b grad W_ab = -G_ba, and M_a = I / V_a (`standard`) or K_a / V_a (`corrected`). F0 is
+/// absent where linear fields are exact; for `standard` it makes F = I + grad u, so that the body is free of
+/// stress at rest. The force is the exact adjoint of the gradient, so linear momentum is kept to round-off.
+///
+/// Vectors that are `shared` or `recomputed` are g_ab = grad W_ab instead, without the volumes, which loops
+/// then take from the particles:
+///   F_a = [sum_b V_b x_ab (x) g_ab] M_a^T + F0_a,   f_a = V_a [Q_a s_a + sum_b Q_b g_ab],   Q_a = V_a P_a
+///   M_a,
+/// M_a = I or K_a, s_a = sum_b V_b g_ab / V_a: the same forces to round-off.
 template <int D>
 struct PairOperator {
-  PairPrecision precision = PairPrecision::single_precision;
+  PairPrecision precision = PairPrecision::single_precision;  ///< never `automatic`
+
+  // Stored: slot k of lane l holds component d of G at [(k * D + d) * lanes + l], zero where the slot has no
+  // pair.
   AlignedArray<float> vectors_f;
   AlignedArray<double> vectors_d;
   AlignedArray<float> adjoint_f;  ///< -G_ba, where it differs from G_ab; else empty
   AlignedArray<double> adjoint_d;
-  Field M;    ///< D×D components, row-major; zero beyond the bodies' particles
-  Field F0;   ///< D×D components, or empty
-  Field sum;  ///< D components: sum_b G_ab
+  // Shared: slot k has the vectors of block `code[k]`, laid out as above.
+  AlignedArray<Index> code;
+  AlignedArray<double> blocks;
+  // Recomputed.
+  std::shared_ptr<const KernelTable> table;
 
-  /// G_ab of lane l in slot k.
+  Field M;    ///< D×D components, row-major; zero beyond the bodies' particles. Empty when shared
+  Field sum;  ///< D components: sum_b G_ab (or s_a). Empty when shared
+  // Shared: slice s has M and s_a of block `slice_code[s]`, D×D + D components of eight lanes each.
+  AlignedArray<Index> slice_code;
+  AlignedArray<double> slice_blocks;
+  Field F0;  ///< D×D components, or empty
+
+  /// Stored G_ab of lane l in slot k.
   Vec<D> vector(std::int64_t k, int lane) const {
     Vec<D> g;
     for (int d = 0; d < D; ++d) {
       const std::size_t at = static_cast<std::size_t>((k * D + d) * lanes + lane);
-      g[d] = precision == PairPrecision::single_precision ? static_cast<double>(vectors_f[at]) : vectors_d[at];
+      g[d] =
+          precision == PairPrecision::single_precision ? static_cast<double>(vectors_f[at]) : vectors_d[at];
     }
     return g;
   }
-  /// What the force is summed with: -G_ba.
+  /// What the force is summed with where vectors are stored: -G_ba.
   const float* adjoint(const float*) const { return adjoint_f.empty() ? vectors_f.data() : adjoint_f.data(); }
-  const double* adjoint(const double*) const { return adjoint_d.empty() ? vectors_d.data() : adjoint_d.data(); }
+  const double* adjoint(const double*) const {
+    return adjoint_d.empty() ? vectors_d.data() : adjoint_d.data();
+  }
   std::size_t bytes() const {
-    return vectors_f.bytes() + vectors_d.bytes() + adjoint_f.bytes() + adjoint_d.bytes() + M.bytes() + F0.bytes() + sum.bytes();
+    return vectors_f.bytes() + vectors_d.bytes() + adjoint_f.bytes() + adjoint_d.bytes() + code.bytes() +
+           blocks.bytes() + slice_code.bytes() + slice_blocks.bytes() + M.bytes() + F0.bytes() + sum.bytes();
   }
 };
 
 /// Builds the operator that `method` names in the reference configuration.
-/// `corrected`: K_a = [sum_b V_b grad W_ab (x) X_ab]^-1, so that sum_b X_ab (x) g_ab = I (Randles & Libersky 1996; Bonet & Lok 1999). The matrix is made
-/// from the pair vectors as stored, hence linear fields are exact in single precision as well.
-/// `compatible`: the least change of those vectors that also closes: see taut/internal/compatible_operator.hpp. Needs boundary area vectors.
-/// \throws InputError for an unknown name (valid ones listed), missing areas, or a particle whose matrix is singular: its id, its position, how many
-/// neighbours it has, and what to do.
+/// `corrected`: K_a = [sum_b V_b grad W_ab (x) X_ab]^-1, so that sum_b X_ab (x) g_ab = I (Randles & Libersky
+/// 1996; Bonet & Lok 1999). The matrix is made from the pair vectors as they are kept, hence linear fields
+/// are exact in single precision as well. `compatible`: the least change of those vectors that also closes:
+/// see taut/internal/compatible_operator.hpp. Needs boundary area vectors; its vectors are stored, in single
+/// precision when the method says `automatic`. \throws InputError for an unknown name (valid ones listed),
+/// missing areas, compatible vectors that are to be shared or recomputed, or a particle whose matrix is
+/// singular: its id, its position, how many neighbours it has, and what to do.
 template <int D>
 PairOperator<D> make_operator(const Method& method, const Particles<D>& particles, const PairList& pairs,
                               const Kernel& kernel, double smoothing_length);

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Packs of eight values through the compilers' vector extensions: portable to every target (g++ and clang++ lower
-/// them to what the processor has), no intrinsics.
+/// Packs of eight values through the compilers' vector extensions: portable to every target (g++ and clang++
+/// lower them to what the processor has), no intrinsics.
 
 #include <cstring>
 #include <taut/core/types.hpp>
@@ -30,5 +30,13 @@ TAUT_INLINE void store(double* p, Pack v) { std::memcpy(p, &v, sizeof v); }
 TAUT_INLINE Pack gather(const double* p, const Index* at) {
   return Pack{p[at[0]], p[at[1]], p[at[2]], p[at[3]], p[at[4]], p[at[5]], p[at[6]], p[at[7]]};
 }
+
+/// All ones in the lanes whose bits of `mask` are set.
+TAUT_INLINE PackMask lanes_of(std::uint8_t mask) {
+  const std::int64_t m = mask;
+  return (PackMask{m, m, m, m, m, m, m, m} & PackMask{1, 2, 4, 8, 16, 32, 64, 128}) != 0;
+}
+/// Whether any lane is set.
+TAUT_INLINE bool any(PackMask m) { return (m[0] | m[1] | m[2] | m[3] | m[4] | m[5] | m[6] | m[7]) != 0; }
 
 }  // namespace taut

@@ -1,0 +1,136 @@
+#pragma once
+/// \file
+/// Where pair loops take their neighbours, pair vectors and particle matrices from.
+
+#include <taut/core/fields.hpp>
+#include <taut/core/operators.hpp>
+#include <taut/core/types.hpp>
+#include <taut/internal/kernel_table.hpp>
+#include <taut/internal/simd.hpp>
+#include <taut/neighbors/pair_list.hpp>
+#include <utility>
+
+namespace taut {
+
+/// Component pointers of a field, so that inner loops keep them in registers.
+template <int N>
+struct Columns {
+  const double* c[N];
+  explicit Columns(const Field& f) {
+    for (int i = 0; i < N; ++i) c[i] = f.component(i);
+  }
+};
+
+/// Calls f(k, at) for each slot k of slice s; at(p) are the values of a component p at the slot's neighbours.
+template <class F>
+TAUT_INLINE void for_slots(const PairList& pairs, Index s, F&& f) {
+  const std::int64_t gathered = pairs.gathered(s), end = pairs.begin(s + 1);
+  for (std::int64_t k = pairs.begin(s); k < gathered; ++k)
+    f(k, [first = pairs.first(k)](const double* p) TAUT_INLINE_LAMBDA { return load(p + first); });
+  for (std::int64_t k = gathered; k < end; ++k)
+    f(k, [at = pairs.block(k)](const double* p) TAUT_INLINE_LAMBDA { return gather(p, at); });
+}
+
+// A payload gives, for one slice, the eight pair vectors of a slot: `slice(s).get(k, at, g)`, zero where the
+// slot has no pair. `has_volumes`: they are G_ab, not g_ab (see PairOperator).
+
+template <int D, class Real>
+struct StoredVectors {
+  static constexpr bool has_volumes = true;
+  const Real *vectors, *adjoints;
+
+  StoredVectors adjoint() const { return {adjoints, vectors}; }
+  TAUT_INLINE const StoredVectors& slice(Index) const { return *this; }
+  template <class At>
+  TAUT_INLINE void get(std::int64_t k, const At&, Pack (&g)[D]) const {
+    for (int d = 0; d < D; ++d) g[d] = load(vectors + (k * D + d) * lanes);
+  }
+};
+
+template <int D>
+struct SharedVectors {
+  static constexpr bool has_volumes = false;
+  const Index* code;
+  const double* blocks;
+
+  const SharedVectors& adjoint() const { return *this; }
+  TAUT_INLINE const SharedVectors& slice(Index) const { return *this; }
+  template <class At>
+  TAUT_INLINE void get(std::int64_t k, const At&, Pack (&g)[D]) const {
+    const double* block = blocks + static_cast<std::int64_t>(code[k]) * (D * lanes);
+    for (int d = 0; d < D; ++d) g[d] = load(block + d * lanes);
+  }
+};
+
+template <int D>
+struct RecomputedVectors {
+  static constexpr bool has_volumes = false;
+  const KernelTable& table;
+  const PairList& pairs;
+  Columns<D> X;
+
+  const RecomputedVectors& adjoint() const { return *this; }
+  struct Slice {
+    const RecomputedVectors& of;
+    Pack Xi[D];
+    template <class At>
+    TAUT_INLINE void get(std::int64_t k, const At& at, Pack (&g)[D]) const {
+      Pack r2 = pack(0);
+      for (int d = 0; d < D; ++d) {
+        g[d] = Xi[d] - at(of.X.c[d]);
+        r2 += g[d] * g[d];
+      }
+      // What is nearer than the support is the list's to say: the table rounds in another order.
+      const Pack slope = of.table.slope_over_r(r2);
+      const Pack w = lanes_of(of.pairs.mask(k)) ? slope : pack(0);
+      for (int d = 0; d < D; ++d) g[d] *= w;
+    }
+  };
+  TAUT_INLINE Slice slice(Index s) const {
+    Slice slice{*this, {}};
+    for (int d = 0; d < D; ++d) slice.Xi[d] = load(X.c[d] + s * lanes);
+    return slice;
+  }
+};
+
+/// M_a and sum_b G_ab of the eight particles of a slice.
+template <int D>
+struct SliceCoefficients {
+  const double *M, *s;
+  std::size_t stride_M, stride_s;
+
+  SliceCoefficients(const PairOperator<D>& op, Index slice) {
+    if (op.slice_code.empty()) {
+      M = op.M.component(0) + slice * lanes;
+      s = op.sum.component(0) + slice * lanes;
+      stride_M = op.M.stride();
+      stride_s = op.sum.stride();
+    } else {
+      M = op.slice_blocks.data() +
+          static_cast<std::int64_t>(op.slice_code[static_cast<std::size_t>(slice)]) * ((D * D + D) * lanes);
+      s = M + D * D * lanes;
+      stride_M = stride_s = lanes;
+    }
+  }
+  TAUT_INLINE Pack matrix(int c) const { return load(M + static_cast<std::size_t>(c) * stride_M); }
+  TAUT_INLINE Pack sum(int d) const { return load(s + static_cast<std::size_t>(d) * stride_s); }
+};
+
+/// Calls f(payload) with the payload of an operator.
+template <int D, class F>
+auto with_payload(const PairOperator<D>& op, const PairList& pairs, const Field& X, F&& f) {
+  switch (op.precision) {
+    case PairPrecision::double_precision:
+      return f(StoredVectors<D, double>{op.vectors_d.data(), op.adjoint(op.vectors_d.data())});
+    case PairPrecision::shared:
+      return f(SharedVectors<D>{op.code.data(), op.blocks.data()});
+    case PairPrecision::recomputed:
+      return f(RecomputedVectors<D>{*op.table, pairs, Columns<D>(X)});
+    case PairPrecision::single_precision:
+    case PairPrecision::automatic:
+      break;
+  }
+  return f(StoredVectors<D, float>{op.vectors_f.data(), op.adjoint(op.vectors_f.data())});
+}
+
+}  // namespace taut

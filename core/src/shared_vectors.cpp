@@ -1,0 +1,101 @@
+#include <cmath>
+#include <taut/internal/block_dictionary.hpp>
+#include <taut/internal/pair_payload.hpp>
+#include <taut/internal/shared_vectors.hpp>
+#include <unordered_set>
+
+namespace taut {
+
+namespace {
+
+constexpr Index chunk_slices = 512;
+
+// Reference offsets X_a - X_b of the pairs of a slot; zero in lanes without one.
+template <int D, class At>
+TAUT_INLINE void offsets(const Columns<D>& X, Index s, std::uint8_t mask, const At& at, Pack (&r)[D]) {
+  const PackMask pair = lanes_of(mask);
+  for (int d = 0; d < D; ++d) r[d] = pair ? load(X.c[d] + s * lanes) - at(X.c[d]) : pack(0);
+}
+
+template <int D>
+BlockKey key_of(const Pack (&r)[D], std::uint8_t mask, double per_quantum) {
+  constexpr std::int64_t factors[3] = {0x2545f4914f6cdd1d, 0x369dea0f31a53f85, 0x27bb2ee687b0b0fd};
+  constexpr double round =
+      6755399441055744.0;  // 1.5 * 2^52: what is added to it is rounded to a whole number
+  PackMask word{};
+  for (int d = 0; d < D; ++d) {
+    const Pack q = r[d] * per_quantum + round;
+    PackMask bits;
+    std::memcpy(&bits, &q, sizeof bits);
+    word += bits * factors[d];
+  }
+  BlockKey key;
+  key.add(mask);
+  for (int l = 0; l < lanes; ++l) key.add(static_cast<std::uint64_t>(word[l]));
+  return key;
+}
+
+template <int D, class F>
+void for_keys(const Particles<D>& p, const PairList& pairs, double support, Index chunk, F&& f) {
+  const Columns<D> X(p.X);
+  for (Index s = chunk * chunk_slices; s < std::min((chunk + 1) * chunk_slices, pairs.slices()); ++s)
+    for_slots(pairs, s, [&](std::int64_t k, auto&& at) {
+      Pack r[D];
+      offsets<D>(X, s, pairs.mask(k), at, r);
+      f(k, key_of<D>(r, pairs.mask(k), 1 / (alike * support)), r);
+    });
+}
+
+Index chunks_of(const PairList& pairs) { return (pairs.slices() + chunk_slices - 1) / chunk_slices; }
+
+}  // namespace
+
+template <int D>
+double distinct_fraction(const Particles<D>& p, const PairList& pairs, double support) {
+  constexpr Index samples = 8;
+  const Index chunks = chunks_of(pairs), step = std::max(1, chunks / samples);
+  std::size_t slots = 0, distinct = 0;
+  for (Index c = 0; c < chunks; c += step) {
+    std::unordered_set<BlockKey, BlockKey::Hash> keys;
+    for_keys<D>(p, pairs, support, c, [&](std::int64_t, const BlockKey& key, const Pack(&)[D]) {
+      keys.insert(key);
+      ++slots;
+    });
+    distinct += keys.size();
+  }
+  return slots ? static_cast<double>(distinct) / static_cast<double>(slots) : 1;
+}
+
+template <int D>
+void share_vectors(const Particles<D>& p, const PairList& pairs, const Kernel& kernel, double h,
+                   PairOperator<D>& op) {
+  const Index chunks = chunks_of(pairs);
+  BlockDictionary dictionary(static_cast<std::size_t>(pairs.slots()), static_cast<std::size_t>(chunks),
+                             D * lanes);
+  const double support = kernel.radius_factor() * h;
+#pragma omp parallel for schedule(dynamic) if (chunks > 1)
+  for (Index c = 0; c < chunks; ++c)
+    for_keys<D>(p, pairs, support, c, [&](std::int64_t k, const BlockKey& key, const Pack(&r)[D]) {
+      dictionary.put(static_cast<std::size_t>(c), static_cast<std::size_t>(k), key, [&](double* block) {
+        for (int l = 0; l < lanes; ++l) {
+          if (!(pairs.mask(k) >> l & 1)) continue;
+          double r2 = 0;
+          for (int d = 0; d < D; ++d) r2 += r[d][l] * r[d][l];
+          const double distance = std::sqrt(r2), slope = kernel.derivative(distance, h) / distance;
+          for (int d = 0; d < D; ++d) block[d * lanes + l] = slope * r[d][l];
+        }
+      });
+    });
+  dictionary.finish(op.code, op.blocks);
+}
+
+#define TAUT_INSTANTIATE(D)                                                                   \
+  template double distinct_fraction<D>(const Particles<D>&, const PairList&, double);         \
+  template void share_vectors<D>(const Particles<D>&, const PairList&, const Kernel&, double, \
+                                 PairOperator<D>&);
+TAUT_INSTANTIATE(1)
+TAUT_INSTANTIATE(2)
+TAUT_INSTANTIATE(3)
+#undef TAUT_INSTANTIATE
+
+}  // namespace taut

@@ -1,0 +1,154 @@
+// The ways to keep pair vectors against each other: what differs is memory and round-off, not forces.
+#include <doctest/doctest.h>
+#include <omp.h>
+
+#include <cmath>
+#include <string>
+#include <taut/core/error.hpp>
+#include <taut/core/formulation.hpp>
+#include <taut/internal/assembly.hpp>
+#include <vector>
+
+using namespace taut;
+
+namespace {
+
+template <int D>
+Cloud<D> body(double jitter, Lattice lattice = Lattice::node_centred) {
+  // Large enough for several threads (3D), and rows that are no multiple of a slice.
+  constexpr double dx = D == 3 ? 1.0 / 17 : D == 2 ? 1.0 / 77 : 1.0 / 301;
+  return make_cloud(box<D>(Vec<D>::Zero(), Vec<D>::Ones()), {.dx = dx, .lattice = lattice, .jitter = jitter});
+}
+
+// A round body: rows of all lengths, slots that are gathered, slices across rows.
+Cloud<3> ball() {
+  return make_cloud(sphere<3>({0, 0, 0}, 0.5), {.dx = 1.0 / 20, .lattice = Lattice::cell_centred});
+}
+
+struct Setting {
+  const char* operators = "corrected";
+  double support_dx = 1.5;
+  bool mirror = false;
+};
+
+template <int D>
+struct Body {
+  Particles<D> p;
+  Constraints<D> constraints;
+  Loads<D> loads;
+  Method method;
+  std::unique_ptr<Formulation<D>> form;
+
+  Body(const Cloud<D>& cloud, PairPrecision precision, const Setting& setting = {}) {
+    method.operators = setting.operators;
+    method.support_dx = setting.support_dx;
+    method.pair_precision = precision;
+    std::vector<typename MirrorMap<D>::Plane> planes;
+    if (setting.mirror) planes.push_back({0, 0.0, 0});
+    const double reach = setting.support_dx * cloud.dx;
+    p = assemble<D>(cloud, {make_material<D>("neo_hookean", {.E = 1e6, .nu = 0.3, .density = 1000})},
+                    std::vector<std::uint8_t>(cloud.size(), 0), planes, reach);
+    form = make_formulation<D>({p, constraints, loads, method});
+    for (Index i = 0; i < p.n; ++i) {
+      const Vec<D> X = p.X.template vec<D>(i);
+      Vec<D> u;
+      for (int d = 0; d < D; ++d) u[d] = 0.05 * std::sin(2 * X[d] + 3 * X[(d + 1) % D]) * X[0];
+      p.x.template set_vec<D>(i, X + u);
+    }
+    form->update_accelerations(0);
+  }
+  Vec<D> force(Index i) const { return p.m.component(0)[i] * p.a.template vec<D>(i); }
+};
+
+// Largest difference of the forces over the largest force.
+template <int D>
+double difference(const Cloud<D>& cloud, PairPrecision precision, const Setting& setting = {}) {
+  const Body<D> exact(cloud, PairPrecision::double_precision, setting), other(cloud, precision, setting);
+  double largest = 0, error = 0;
+  for (Index i = 0; i < exact.p.n; ++i) {
+    largest = std::max(largest, exact.force(i).norm());
+    error = std::max(error, (exact.force(i) - other.force(i)).norm());
+  }
+  CHECK(largest > 0);
+  return error / largest;
+}
+
+template <int D>
+void check_payloads(const Cloud<D>& cloud, const Setting& setting = {}) {
+  CHECK(difference(cloud, PairPrecision::shared, setting) < 1e-11);
+  CHECK(difference(cloud, PairPrecision::recomputed, setting) < 1e-8);
+  const double single = difference(cloud, PairPrecision::single_precision, setting);
+  CHECK(single < 1e-5);
+  CHECK(single > 1e-12);  // were it not, the payload would not be what it says
+}
+
+constexpr PairPrecision payloads[] = {PairPrecision::single_precision, PairPrecision::double_precision,
+                                      PairPrecision::shared, PairPrecision::recomputed};
+
+}  // namespace
+
+TEST_CASE("forces do not depend on how pair vectors are kept") {
+  SUBCASE("1D") { check_payloads(body<1>(0)); }
+  SUBCASE("1D, jittered") { check_payloads(body<1>(0.2)); }
+  SUBCASE("2D") { check_payloads(body<2>(0), {.support_dx = 2.4}); }
+  SUBCASE("2D, jittered") { check_payloads(body<2>(0.2)); }
+  SUBCASE("3D") { check_payloads(body<3>(0)); }
+  SUBCASE("3D, jittered") { check_payloads(body<3>(0.2), {.support_dx = 2.1}); }
+  SUBCASE("ball") { check_payloads(ball(), {.support_dx = 2.1}); }
+  SUBCASE("standard operator") { check_payloads(body<2>(0), {.operators = "standard", .support_dx = 2.6}); }
+  SUBCASE("symmetry plane") { check_payloads(body<2>(0), {.support_dx = 2.4, .mirror = true}); }
+}
+
+TEST_CASE("a lattice shares its pair vectors, an unordered cloud does not, and automatic knows") {
+  const Body<3> lattice(body<3>(0), PairPrecision::shared),
+      stored(body<3>(0), PairPrecision::single_precision);
+  CHECK(lattice.form->bytes() < 0.5 * static_cast<double>(stored.form->bytes()));
+  CHECK(Body<3>(body<3>(0), PairPrecision::automatic).form->bytes() == lattice.form->bytes());
+  const auto jittered = body<3>(0.2);
+  CHECK(Body<3>(jittered, PairPrecision::automatic).form->bytes() ==
+        Body<3>(jittered, PairPrecision::single_precision).form->bytes());
+}
+
+TEST_CASE("forces of every payload have the same bits for one and two threads") {
+  const int before = omp_get_max_threads();
+  for (const double jitter : {0.0, 0.2})
+    for (const PairPrecision precision : payloads) {
+      const auto cloud = body<3>(jitter);
+      omp_set_num_threads(1);
+      const Body<3> one(cloud, precision);
+      omp_set_num_threads(2);
+      const Body<3> two(cloud, precision);
+      omp_set_num_threads(before);
+      REQUIRE(one.p.n > 4096);  // enough for the loops to be shared out
+      bool same = one.form->stable_step() == two.form->stable_step();
+      for (Index i = 0; i < one.p.n; ++i) same = same && one.p.a.vec<3>(i) == two.p.a.vec<3>(i);
+      CHECK(same);
+    }
+}
+
+TEST_CASE("internal forces of every payload add up to nothing") {
+  for (const double jitter : {0.0, 0.2})
+    for (const PairPrecision precision : payloads) {
+      const Body<3> b(body<3>(jitter), precision);
+      Vec<3> sum = Vec<3>::Zero();
+      double scale = 0;
+      for (Index i = 0; i < b.p.n; ++i) {
+        sum += b.force(i);
+        scale += b.force(i).norm();
+      }
+      CHECK(sum.norm() < 1e-12 * scale);
+    }
+}
+
+TEST_CASE("corrected operators reproduce linear fields with every payload") {
+  for (const double jitter : {0.0, 0.2})
+    for (const PairPrecision precision : payloads) {
+      Body<3> b(body<3>(jitter), precision);
+      Mat<3> F;
+      F << 1.1, 0.2, -0.1, 0.05, 0.9, 0.15, -0.2, 0.1, 1.05;
+      for (Index i = 0; i < b.p.n; ++i) b.p.x.set_vec<3>(i, F * b.p.X.vec<3>(i));
+      double error = 0;
+      for (Index i = 0; i < b.p.n; ++i) error = std::max(error, (b.form->deformation_gradient(i) - F).norm());
+      CHECK(error < 1e-12);
+    }
+}
