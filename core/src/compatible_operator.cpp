@@ -158,13 +158,14 @@ double make_compatible(const Particles<D>& p, const PairList& pairs, const Kerne
         preconditioned(system.size(), D);
   const Field diagonal = system.diagonal();
   const double before = std::sqrt(dot(p, residual, residual));
-  double rho = 0;
-  for (int it = 0; it < iterations && before > 0; ++it) {
+  // Round-off of the closure of a cell's faces: below it there is nothing to solve for.
+  const double negligible = 1e-14 * std::pow(p.dx, D - 1) * std::sqrt(static_cast<double>(p.n));
+  double rho = 0, now = before;
+  for (int it = 0; it < iterations && now > negligible; ++it) {
     for (int d = 0; d < D; ++d)
       for (Index i = 0; i < p.n; ++i)
         preconditioned.component(d)[i] = residual.component(d)[i] / std::max(diagonal.component(0)[i], 1e-300);
     const double next = dot(p, residual, preconditioned);
-    if (!(next > 1e-28 * before * before / diagonal.component(0)[0])) break;
     const double beta = it == 0 ? 0 : next / rho;
     rho = next;
     for (int d = 0; d < D; ++d)
@@ -178,6 +179,7 @@ double make_compatible(const Particles<D>& p, const PairList& pairs, const Kerne
         lambda.component(d)[i] += alpha * direction.component(d)[i];
         residual.component(d)[i] -= alpha * image.component(d)[i];
       }
+    now = std::sqrt(dot(p, residual, residual));
   }
   system.update_mu(lambda);
 
@@ -197,7 +199,7 @@ double make_compatible(const Particles<D>& p, const PairList& pairs, const Kerne
   }
   op.vectors_d = std::move(own);
   op.adjoint_d = std::move(adjoint);
-  return before > 0 ? std::sqrt(dot(p, residual, residual)) / before : 0;
+  return before > negligible ? now / before : 0;
 }
 
 template double make_compatible<1>(const Particles<1>&, const PairList&, const Kernel&, double, int, PairOperator<1>&);

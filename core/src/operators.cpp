@@ -25,21 +25,21 @@ std::string describe(const Vec<D>& X) {
   return text + ")";
 }
 
-// G_ab = V_a V_b grad W_ab for all slots; antisymmetric to the last bit, because every factor is.
+// G_ab = w_a w_b grad W_ab for all slots; antisymmetric to the last bit, because every factor is.
 template <int D, class Real>
 void fill_vectors(const Particles<D>& p, const PairList& pairs, const Kernel& kernel, double h,
-                  AlignedArray<Real>& out) {
+                  const Field& weight, AlignedArray<Real>& out) {
   out = AlignedArray<Real>(static_cast<std::size_t>(pairs.slots()) * D * lanes);
-  const double* V = p.V.component(0);
+  const double* w = weight.component(0);
 #pragma omp parallel for schedule(static)
   for (Index s = 0; s < pairs.slices(); ++s)
     for (Index a = s * lanes; a < std::min<Index>((s + 1) * lanes, pairs.particles()); ++a)
       pairs.for_each(a, [&](Index b, std::int64_t k, int lane) {
         const Vec<D> rab = p.X.template vec<D>(a) - p.X.template vec<D>(b);
         const double r = rab.norm();
-        const double w = V[a] * V[b] * kernel.derivative(r, h) / r;
+        const double slope = w[a] * w[b] * kernel.derivative(r, h) / r;
         for (int d = 0; d < D; ++d)
-          out[static_cast<std::size_t>((k * D + d) * lanes + lane)] = static_cast<Real>(w * rab[d]);
+          out[static_cast<std::size_t>((k * D + d) * lanes + lane)] = static_cast<Real>(slope * rab[d]);
       });
 }
 
@@ -53,7 +53,7 @@ struct Moments {
 
 template <int D, class Payload>
 void moments_of_slice(Index s, const PairList& pairs, const Payload& payload, const Columns<D>& X,
-                      const double* V, Moments<D>& m) {
+                      const double* weight, Moments<D>& m) {
   Pack Xi[D];
   for (int d = 0; d < D; ++d) Xi[d] = load(X.c[d] + s * lanes);
   for (auto& c : m.outer) c = pack(0);
@@ -66,7 +66,7 @@ void moments_of_slice(Index s, const PairList& pairs, const Payload& payload, co
     const PackMask pair = lanes_of(pairs.mask(k));
     for (int d = 0; d < D; ++d) {
       Xab[d] = pair ? at(X.c[d]) - Xi[d] : pack(0);
-      if constexpr (!Payload::has_volumes) g[d] *= at(V);
+      if constexpr (!Payload::has_weights) g[d] *= at(weight);
       gg += g[d] * g[d];
       XX += Xab[d] * Xab[d];
     }
@@ -107,12 +107,12 @@ bool invert_moment(const Moments<D>& m, int l, Coefficients<D>& out) {
 }
 
 template <int D>
-BlockKey key_of(const Coefficients<D>& c, const Pack& V, double support) {
+BlockKey key_of(const Coefficients<D>& c, const Pack& weight, double support) {
   const auto quantised = [](double v) { return static_cast<std::uint64_t>(std::llround(v / alike)); };
   BlockKey key;
   for (int l = 0; l < lanes; ++l) {
     for (int k = 0; k < D * D; ++k) key.add(quantised(c[k][l]));
-    for (int k = D * D; k < D * D + D; ++k) key.add(quantised(c[k][l] * V[l] * support));
+    for (int k = D * D; k < D * D + D; ++k) key.add(quantised(c[k][l] * weight[l] * support));
   }
   return key;
 }
@@ -133,18 +133,18 @@ void fill_matrices(bool corrected, const Particles<D>& p, const PairList& pairs,
   }
   if (!corrected) op.F0 = Field(total, D * D);
   const Columns<D> X(p.X);
-  const double* V = p.V.component(0);
+  const double* w = op.weight.component(0);
   std::atomic<Index> singular{p.n};
 #pragma omp parallel for schedule(static) if (chunks > 1)
   for (Index chunk = 0; chunk < chunks; ++chunk)
     for (Index s = chunk * chunk_slices; s < std::min((chunk + 1) * chunk_slices, slices); ++s) {
       Moments<D> m;
-      moments_of_slice<D>(s, pairs, payload, X, V, m);
+      moments_of_slice<D>(s, pairs, payload, X, w, m);
       Coefficients<D> c{};
       for (int l = 0; l < std::min<Index>(lanes, p.n - s * lanes); ++l) {
         const Index a = s * lanes + l;
-        const double factor = Payload::has_volumes ? 1 / V[a] : 1;
-        for (int d = 0; d < D; ++d) c[D * D + d][l] = Payload::has_volumes ? m.sum[d][l] : m.sum[d][l] / V[a];
+        const double factor = Payload::has_weights ? 1 / w[a] : 1;
+        for (int d = 0; d < D; ++d) c[D * D + d][l] = Payload::has_weights ? m.sum[d][l] : m.sum[d][l] / w[a];
         if (!corrected) {
           for (int k = 0; k < D * D; ++k) {
             const double one = k % (D + 1) == 0;
@@ -159,7 +159,7 @@ void fill_matrices(bool corrected, const Particles<D>& p, const PairList& pairs,
       }
       if (shared) {
         dictionary.put(static_cast<std::size_t>(chunk), static_cast<std::size_t>(s),
-                       key_of<D>(c, load(V + s * lanes), support), [&](double* block) {
+                       key_of<D>(c, load(w + s * lanes), support), [&](double* block) {
                          for (int k = 0; k < D * D + D; ++k) store(block + k * lanes, c[k]);
                        });
       } else {
@@ -213,9 +213,11 @@ PairOperator<D> make_operator(const Method& method, const Particles<D>& p, const
 
   PairOperator<D> op;
   op.precision = compatible ? PairPrecision::double_precision : precision;
+  op.weight = p.V;
+  if (name != "standard") std::fill_n(op.weight.data(), p.total, std::pow(p.dx, D));
   switch (op.precision) {
     case PairPrecision::double_precision:
-      fill_vectors(p, pairs, kernel, h, op.vectors_d);
+      fill_vectors(p, pairs, kernel, h, op.weight, op.vectors_d);
       break;
     case PairPrecision::shared:
       share_vectors<D>(p, pairs, kernel, h, op);
@@ -224,7 +226,7 @@ PairOperator<D> make_operator(const Method& method, const Particles<D>& p, const
       op.table = std::make_shared<const KernelTable>(kernel, h);
       break;
     default:
-      fill_vectors(p, pairs, kernel, h, op.vectors_f);
+      fill_vectors(p, pairs, kernel, h, op.weight, op.vectors_f);
   }
   const auto make_matrices = [&] {
     with_payload<D>(op, pairs, p.X, [&](const auto& payload) {

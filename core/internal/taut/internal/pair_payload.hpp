@@ -32,11 +32,11 @@ TAUT_INLINE void for_slots(const PairList& pairs, Index s, F&& f) {
 }
 
 // A payload gives, for one slice, the eight pair vectors of a slot: `slice(s).get(k, at, g)`, zero where the
-// slot has no pair. `has_volumes`: they are G_ab, not g_ab (see PairOperator).
+// slot has no pair. `has_weights`: they are G_ab, not g_ab (see PairOperator).
 
 template <int D, class Real>
 struct StoredVectors {
-  static constexpr bool has_volumes = true;
+  static constexpr bool has_weights = true;
   const Real *vectors, *adjoints;
 
   StoredVectors adjoint() const { return {adjoints, vectors}; }
@@ -49,7 +49,7 @@ struct StoredVectors {
 
 template <int D>
 struct SharedVectors {
-  static constexpr bool has_volumes = false;
+  static constexpr bool has_weights = false;
   const Index* code;
   const double* blocks;
 
@@ -64,7 +64,7 @@ struct SharedVectors {
 
 template <int D>
 struct RecomputedVectors {
-  static constexpr bool has_volumes = false;
+  static constexpr bool has_weights = false;
   const KernelTable& table;
   const PairList& pairs;
   Columns<D> X;
