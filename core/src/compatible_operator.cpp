@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <numeric>
 #include <taut/core/error.hpp>
 #include <taut/internal/compatible_operator.hpp>
 
@@ -158,13 +159,17 @@ double make_compatible(const Particles<D>& p, const PairList& pairs, const Kerne
         preconditioned(system.size(), D);
   const Field diagonal = system.diagonal();
   const double before = std::sqrt(dot(p, residual, residual));
+  // What iterates on the round-off of vectors that close already diverges.
+  const double* V = p.V.component(0);
+  const double round_off = 1e-14 / p.dx * std::sqrt(std::inner_product(V, V + p.n, V, 0.0));
   double rho = 0;
   for (int it = 0; it < iterations && before > 0; ++it) {
     for (int d = 0; d < D; ++d)
       for (Index i = 0; i < p.n; ++i)
         preconditioned.component(d)[i] = residual.component(d)[i] / std::max(diagonal.component(0)[i], 1e-300);
     const double next = dot(p, residual, preconditioned);
-    if (!(next > 1e-28 * before * before / diagonal.component(0)[0])) break;
+    const double enough = std::max(1e-14 * before, round_off);
+    if (!(next > enough * enough / diagonal.component(0)[0])) break;
     const double beta = it == 0 ? 0 : next / rho;
     rho = next;
     for (int d = 0; d < D; ++d)

@@ -25,19 +25,21 @@ std::string describe(const Vec<D>& X) {
   return text + ")";
 }
 
-// G_ab = V_a V_b grad W_ab for all slots; antisymmetric to the last bit, because every factor is.
+// G_ab = w_ab grad W_ab for all slots, w_ab = V_a V_b or a constant; antisymmetric to the last bit, because
+// every factor is.
 template <int D, class Real>
 void fill_vectors(const Particles<D>& p, const PairList& pairs, const Kernel& kernel, double h,
-                  AlignedArray<Real>& out) {
+                  bool by_volume, AlignedArray<Real>& out) {
   out = AlignedArray<Real>(static_cast<std::size_t>(pairs.slots()) * D * lanes);
   const double* V = p.V.component(0);
+  const double cell = std::pow(p.dx, D);
 #pragma omp parallel for schedule(static)
   for (Index s = 0; s < pairs.slices(); ++s)
     for (Index a = s * lanes; a < std::min<Index>((s + 1) * lanes, pairs.particles()); ++a)
       pairs.for_each(a, [&](Index b, std::int64_t k, int lane) {
         const Vec<D> rab = p.X.template vec<D>(a) - p.X.template vec<D>(b);
         const double r = rab.norm();
-        const double w = V[a] * V[b] * kernel.derivative(r, h) / r;
+        const double w = (by_volume ? V[a] * V[b] : cell) * kernel.derivative(r, h) / r;
         for (int d = 0; d < D; ++d)
           out[static_cast<std::size_t>((k * D + d) * lanes + lane)] = static_cast<Real>(w * rab[d]);
       });
@@ -107,12 +109,12 @@ bool invert_moment(const Moments<D>& m, int l, Coefficients<D>& out) {
 }
 
 template <int D>
-BlockKey key_of(const Coefficients<D>& c, const Pack& V, double support) {
+BlockKey key_of(const Coefficients<D>& c, const Pack& sum_unit) {
   const auto quantised = [](double v) { return static_cast<std::uint64_t>(std::llround(v / alike)); };
   BlockKey key;
   for (int l = 0; l < lanes; ++l) {
     for (int k = 0; k < D * D; ++k) key.add(quantised(c[k][l]));
-    for (int k = D * D; k < D * D + D; ++k) key.add(quantised(c[k][l] * V[l] * support));
+    for (int k = D * D; k < D * D + D; ++k) key.add(quantised(c[k][l] * sum_unit[l]));
   }
   return key;
 }
@@ -159,7 +161,8 @@ void fill_matrices(bool corrected, const Particles<D>& p, const PairList& pairs,
       }
       if (shared) {
         dictionary.put(static_cast<std::size_t>(chunk), static_cast<std::size_t>(s),
-                       key_of<D>(c, load(V + s * lanes), support), [&](double* block) {
+                       key_of<D>(c, support * (Payload::has_volumes ? pack(1) : load(V + s * lanes))),
+                       [&](double* block) {
                          for (int k = 0; k < D * D + D; ++k) store(block + k * lanes, c[k]);
                        });
       } else {
@@ -207,28 +210,30 @@ PairOperator<D> make_operator(const Method& method, const Particles<D>& p, const
   const auto names = operator_names();
   if (std::find(names.begin(), names.end(), name) == names.end())
     throw InputError(fmt::format("unknown operators \"{}\"; valid: {}", name, join_names(names)));
-  const bool compatible = name == "compatible";
+  const bool standard = name == "standard", compatible = name == "compatible";
   const double support = kernel.radius_factor() * h;
   const PairPrecision precision = resolve<D>(method, p, pairs, support);
 
   PairOperator<D> op;
   op.precision = compatible ? PairPrecision::double_precision : precision;
+  op.volumes_apart =
+      standard && (precision == PairPrecision::shared || precision == PairPrecision::recomputed);
   switch (op.precision) {
     case PairPrecision::double_precision:
-      fill_vectors(p, pairs, kernel, h, op.vectors_d);
+      fill_vectors(p, pairs, kernel, h, standard, op.vectors_d);
       break;
     case PairPrecision::shared:
-      share_vectors<D>(p, pairs, kernel, h, op);
+      share_vectors<D>(p, pairs, kernel, h, standard ? 1 : std::pow(p.dx, D), op);
       break;
     case PairPrecision::recomputed:
       op.table = std::make_shared<const KernelTable>(kernel, h);
       break;
     default:
-      fill_vectors(p, pairs, kernel, h, op.vectors_f);
+      fill_vectors(p, pairs, kernel, h, standard, op.vectors_f);
   }
   const auto make_matrices = [&] {
     with_payload<D>(op, pairs, p.X, [&](const auto& payload) {
-      fill_matrices<D>(name != "standard", p, pairs, support, payload, op);
+      fill_matrices<D>(!standard, p, pairs, support, payload, op);
     });
   };
   make_matrices();

@@ -68,7 +68,7 @@ double distinct_fraction(const Particles<D>& p, const PairList& pairs, double su
 
 template <int D>
 void share_vectors(const Particles<D>& p, const PairList& pairs, const Kernel& kernel, double h,
-                   PairOperator<D>& op) {
+                   double factor, PairOperator<D>& op) {
   const Index chunks = chunks_of(pairs);
   BlockDictionary dictionary(static_cast<std::size_t>(pairs.slots()), static_cast<std::size_t>(chunks),
                              D * lanes);
@@ -81,7 +81,7 @@ void share_vectors(const Particles<D>& p, const PairList& pairs, const Kernel& k
           if (!(pairs.mask(k) >> l & 1)) continue;
           double r2 = 0;
           for (int d = 0; d < D; ++d) r2 += r[d][l] * r[d][l];
-          const double distance = std::sqrt(r2), slope = kernel.derivative(distance, h) / distance;
+          const double distance = std::sqrt(r2), slope = factor * kernel.derivative(distance, h) / distance;
           for (int d = 0; d < D; ++d) block[d * lanes + l] = slope * r[d][l];
         }
       });
@@ -89,9 +89,9 @@ void share_vectors(const Particles<D>& p, const PairList& pairs, const Kernel& k
   dictionary.finish(op.code, op.blocks);
 }
 
-#define TAUT_INSTANTIATE(D)                                                                   \
-  template double distinct_fraction<D>(const Particles<D>&, const PairList&, double);         \
-  template void share_vectors<D>(const Particles<D>&, const PairList&, const Kernel&, double, \
+#define TAUT_INSTANTIATE(D)                                                                           \
+  template double distinct_fraction<D>(const Particles<D>&, const PairList&, double);                 \
+  template void share_vectors<D>(const Particles<D>&, const PairList&, const Kernel&, double, double, \
                                  PairOperator<D>&);
 TAUT_INSTANTIATE(1)
 TAUT_INSTANTIATE(2)

@@ -30,13 +30,19 @@ TEST_CASE("truss: tl_displacement is within 1 % of finite elements at every load
   }
 }
 
-TEST_CASE("truss: the error of tl_displacement falls with the spacing") {
+TEST_CASE("truss: tl_displacement has the uniform state exactly, and its error falls with the spacing where there is one") {
   for (const Truth& truth : {truths[3], truths[7], truths[11], truths[15]}) {
     CAPTURE(truth.load);
     CAPTURE(truth.nu);
     const double coarse = 1e3 * solve({.load = truth.load, .nu = truth.nu}).tip.x() / truth.ux_mm - 1;
     const double fine = 1e3 * solve({.load = truth.load, .nu = truth.nu, .dx = 1e-3}).tip.x() / truth.ux_mm - 1;
-    CHECK(std::abs(fine) < 0.7 * std::abs(coarse));
+    if (truth.nu == 0) {
+      // Left are the last digit of the reference, 4e-6, and what relaxation leaves.
+      CHECK(std::abs(coarse) < 2e-5);
+      CHECK(std::abs(fine) < 2e-5);
+    } else {
+      CHECK(std::abs(fine) < 0.7 * std::abs(coarse));
+    }
   }
 }
 

@@ -19,18 +19,20 @@ class KernelTable;
 /// matrix M_a for each particle,
 ///   F_a = [sum_b x_ab (x) G_ab] M_a^T + F0_a,   x_ab = x_b - x_a,
 ///   f_a = sum_b (Q_a + Q_b) G_ab,        Q_a = V_a P_a M_a,
-/// where G_ab = V_a V_b grad W_ab = -G_ba, and M_a = I / V_a (`standard`) or K_a / V_a (`corrected`). F0 is
-/// absent where linear fields are exact; for `standard` it makes F = I + grad u, so that the body is free of
-/// stress at rest. The force is the exact adjoint of the gradient, so linear momentum is kept to round-off.
+/// where G_ab = w_ab grad W_ab = -G_ba. `standard`: w_ab = V_a V_b, M_a = I / V_a, and F0 makes F = I + grad
+/// u, so that the body is free of stress at rest. `corrected`: any one constant for w_ab, M_a = [sum_b G_ab
+/// (x) X_ab]^-1, so that linear fields are exact without F0. The force is the exact adjoint of the gradient,
+/// so linear momentum is kept to round-off.
 ///
-/// Vectors that are `shared` or `recomputed` are g_ab = grad W_ab instead, without the volumes, which loops
-/// then take from the particles:
+/// Vectors of `standard` that are `shared` or `recomputed` are g_ab = grad W_ab instead; loops then take the
+/// volumes from the particles (`volumes_apart`):
 ///   F_a = [sum_b V_b x_ab (x) g_ab] M_a^T + F0_a,   f_a = V_a [Q_a s_a + sum_b Q_b g_ab],   Q_a = V_a P_a
 ///   M_a,
-/// M_a = I or K_a, s_a = sum_b V_b g_ab / V_a: the same forces to round-off.
+/// M_a = I, s_a = sum_b V_b g_ab / V_a: the same forces to round-off.
 template <int D>
 struct PairOperator {
   PairPrecision precision = PairPrecision::single_precision;  ///< never `automatic`
+  bool volumes_apart = false;
 
   // Stored: slot k of lane l holds component d of G at [(k * D + d) * lanes + l], zero where the slot has no
   // pair.
@@ -73,10 +75,13 @@ struct PairOperator {
 };
 
 /// Builds the operator that `method` names in the reference configuration.
-/// `corrected`: K_a = [sum_b V_b grad W_ab (x) X_ab]^-1, so that sum_b X_ab (x) g_ab = I (Randles & Libersky
-/// 1996; Bonet & Lok 1999). The matrix is made from the pair vectors as they are kept, hence linear fields
-/// are exact in single precision as well. `compatible`: the least change of those vectors that also closes:
-/// see taut/internal/compatible_operator.hpp. Needs boundary area vectors; its vectors are stored, in single
+/// `corrected` (Randles & Libersky 1996; Bonet & Lok 1999): the matrix is made from the pair vectors as they
+/// are kept, hence linear fields are exact in single precision as well. Neighbours weigh alike, whatever
+/// their volumes: those next to a face of a node-centred lattice, where tributary volumes are half, then see
+/// as much to both sides. At R = 1.5 dx a constant stress so makes the forces of its tractions on the faces
+/// and none inside, to round-off; with volumes as weights a held face carries 3/2 of the stress that it
+/// should. `compatible`: the least change of those vectors that also closes: see
+/// taut/internal/compatible_operator.hpp. Needs boundary area vectors; its vectors are stored, in single
 /// precision when the method says `automatic`. \throws InputError for an unknown name (valid ones listed),
 /// missing areas, compatible vectors that are to be shared or recomputed, or a particle whose matrix is
 /// singular: its id, its position, how many neighbours it has, and what to do.

@@ -32,7 +32,7 @@ TAUT_INLINE void for_slots(const PairList& pairs, Index s, F&& f) {
 }
 
 // A payload gives, for one slice, the eight pair vectors of a slot: `slice(s).get(k, at, g)`, zero where the
-// slot has no pair. `has_volumes`: they are G_ab, not g_ab (see PairOperator).
+// slot has no pair. `has_volumes`: they are G_ab, so that loops need no volumes (see PairOperator).
 
 template <int D, class Real>
 struct StoredVectors {
@@ -47,9 +47,9 @@ struct StoredVectors {
   }
 };
 
-template <int D>
+template <int D, bool HasVolumes>
 struct SharedVectors {
-  static constexpr bool has_volumes = false;
+  static constexpr bool has_volumes = HasVolumes;
   const Index* code;
   const double* blocks;
 
@@ -62,9 +62,9 @@ struct SharedVectors {
   }
 };
 
-template <int D>
+template <int D, bool HasVolumes>
 struct RecomputedVectors {
-  static constexpr bool has_volumes = false;
+  static constexpr bool has_volumes = HasVolumes;
   const KernelTable& table;
   const PairList& pairs;
   Columns<D> X;
@@ -123,9 +123,11 @@ auto with_payload(const PairOperator<D>& op, const PairList& pairs, const Field&
     case PairPrecision::double_precision:
       return f(StoredVectors<D, double>{op.vectors_d.data(), op.adjoint(op.vectors_d.data())});
     case PairPrecision::shared:
-      return f(SharedVectors<D>{op.code.data(), op.blocks.data()});
+      return op.volumes_apart ? f(SharedVectors<D, false>{op.code.data(), op.blocks.data()})
+                              : f(SharedVectors<D, true>{op.code.data(), op.blocks.data()});
     case PairPrecision::recomputed:
-      return f(RecomputedVectors<D>{*op.table, pairs, Columns<D>(X)});
+      return op.volumes_apart ? f(RecomputedVectors<D, false>{*op.table, pairs, Columns<D>(X)})
+                              : f(RecomputedVectors<D, true>{*op.table, pairs, Columns<D>(X)});
     case PairPrecision::single_precision:
     case PairPrecision::automatic:
       break;

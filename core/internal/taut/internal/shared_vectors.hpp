@@ -18,9 +18,9 @@ inline constexpr double alike = 1e-10;
 template <int D>
 double distinct_fraction(const Particles<D>& particles, const PairList& pairs, double support);
 
-/// Fills `code` and `blocks` of an operator: g_ab = grad W_ab.
+/// Fills `code` and `blocks` of an operator with `factor` grad W_ab.
 template <int D>
 void share_vectors(const Particles<D>& particles, const PairList& pairs, const Kernel& kernel, double h,
-                   PairOperator<D>& op);
+                   double factor, PairOperator<D>& op);
 
 }  // namespace taut
