@@ -143,3 +143,15 @@ TEST_CASE("orders of no point and of one") {
   CHECK(locality_order(Points<2>().view(), 1.0).empty());
   CHECK(locality_order(random_cloud<2>(1).view(), 1.0) == identity(1));
 }
+
+TEST_CASE("large planes of a lattice are cut into blocks of rows") {
+  const auto block = lattice<3>({100, 90, 4});
+  const auto sorted = block.reordered(locality_order(block.view(), 2.1));
+  // Rows stay whole, and the next plane comes before the rest of this one.
+  CHECK(std::is_sorted(sorted.x[0].begin(), sorted.x[0].begin() + 100));
+  const auto next = std::find(sorted.x[2].begin(), sorted.x[2].end(), 1.0) - sorted.x[2].begin();
+  CHECK(next % 100 == 0);
+  CHECK(next > 1000);
+  CHECK(next < 2000);
+  CHECK(find_pairs(sorted.view(), 2.1).contiguous_fraction() > 0.97);
+}
