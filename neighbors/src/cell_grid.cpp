@@ -150,7 +150,7 @@ void CellGrid<D>::collect_lanes(const Slice<D>& slice, int begin, int end, Works
     Box half;
     double half_reach;
     const double left = bound(begin, middle, half, half_reach), right = bound(middle, end, half, half_reach);
-    if (!(volume <= left + right)) {
+    if (!(volume <= std::min<double>(left + right, end - begin))) {
       collect_lanes<graded>(slice, begin, middle, work, masks);
       collect_lanes<graded>(slice, middle, end, work, masks);
       return;

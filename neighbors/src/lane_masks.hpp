@@ -47,7 +47,7 @@ class LaneMasks {
     highest_ = highest;
   }
 
-  // Calls visit(begin, end) for the maximal runs of marked granules, [begin, end) being particles, in
+  // Calls visit(begin, end) for runs of marked granules, [begin, end) being particles, in
   // ascending order, and clears all. The bytes from begin - margin to end + margin may be read in the call.
   template <class Visit>
   void drain(Visit&& visit) {
@@ -68,7 +68,7 @@ class LaneMasks {
           const int first = std::countr_zero(bits);
           const int length = std::countr_one(bits >> first);
           const std::size_t start = g * 64 + static_cast<std::size_t>(first);
-          if (start != end) {
+          if (begin == end || start > end + closed_gap) {
             flush();
             begin = start;
           }
@@ -83,6 +83,8 @@ class LaneMasks {
   }
 
   static constexpr int margin = 64;
+  // Runs this close, in granules, are one: the encoder's chunks would cover the gap anyway.
+  static constexpr std::size_t closed_gap = 2;
 
  private:
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
