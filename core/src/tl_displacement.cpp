@@ -54,7 +54,9 @@ class TlDisplacement final : public Formulation<D> {
   double stable_step() const override {
     double ratio = 1;
     for (const auto* material : materials_)
-      ratio = std::max(ratio, material->wave_speed(stretch_.min, stretch_.max) / material->wave_speed());
+      ratio =
+          std::max(ratio, material->wave_speed(stretch_.min, stretch_.max, stretch_.J_min, stretch_.J_max) /
+                              material->wave_speed());
     return 2 / (frequency_ * ratio);
   }
 
@@ -102,9 +104,11 @@ class TlDisplacement final : public Formulation<D> {
   }
 
   Index first_inverted(Index first, Index last, const double* F) const;
-  void undeform_padding(Index s, Pack (&F)[D * D]) const {
-    for (int l = p_.n - s * lanes; l < lanes; ++l)
-      for (int k = 0; k < D * D; ++k) F[k][l] = k % (D + 1) == 0;
+  // Lanes behind the last particle do as it does, so that they neither break nor widen the bounds.
+  void fill_padding(Index s, Pack (&F)[D * D]) const {
+    const int used = p_.n - s * lanes;
+    for (int l = used; l < lanes; ++l)
+      for (int k = 0; k < D * D; ++k) F[k][l] = F[k][used - 1];
   }
 
   TAUT_INLINE void add_offset(Index s, Pack (&F)[D * D]) const {
@@ -150,7 +154,7 @@ void TlDisplacement<D>::gradient_pass(const Payload& payload) {
         Pack f[D * D];
         gradient_of_slice<D>(s, pairs_, payload, x, weight, {op_, s}, f);
         add_offset(s, f);
-        if ((s + 1) * lanes > p_.n) undeform_padding(s, f);
+        if ((s + 1) * lanes > p_.n) fill_padding(s, f);
         bad |= ~(mine.add(f) > 0);
         for (int k = 0; k < D * D; ++k) store(F + k * chunk + (s - first) * lanes, f[k]);
         if (control_) control_->keep(s, f);

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Bounds of the principal stretches over many deformation gradients, without a square root or branch a particle.
+/// Bounds of the principal stretches over many deformation gradients, without a square root or branch a
+/// particle.
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +10,10 @@
 
 namespace taut {
 
-/// Interval that holds every principal stretch.
+/// Intervals that hold every principal stretch, and every J.
 struct StretchBounds {
   double min = 1, max = 1;
+  double J_min = 1, J_max = 1;
 };
 
 /// Gathers the extremes of tr C, of the variance of its eigenvalues and of J, from which the bounds follow
@@ -51,6 +53,7 @@ class StretchExtremes {
     mean_min_ = mean < mean_min_ ? mean : mean_min_;
     variance_ = variance > variance_ ? variance : variance_;
     J_min_ = J < J_min_ ? J : J_min_;
+    J_max_ = J > J_max_ ? J : J_max_;
     return J;
   }
 
@@ -59,15 +62,17 @@ class StretchExtremes {
     mean_min_ = o.mean_min_ < mean_min_ ? o.mean_min_ : mean_min_;
     variance_ = o.variance_ > variance_ ? o.variance_ : variance_;
     J_min_ = o.J_min_ < J_min_ ? o.J_min_ : J_min_;
+    J_max_ = o.J_max_ > J_max_ ? o.J_max_ : J_max_;
   }
 
   StretchBounds bounds() const {
-    double mean_max = 0, mean_min = mean_min_[0], variance = 0, J = J_min_[0];
+    double mean_max = 0, mean_min = mean_min_[0], variance = 0, J = J_min_[0], J_max = J_max_[0];
     for (int l = 0; l < lanes; ++l) {
       mean_max = std::max(mean_max, mean_max_[l]);
       mean_min = std::min(mean_min, mean_min_[l]);
       variance = std::max(variance, variance_[l]);
       J = std::min(J, J_min_[l]);
+      J_max = std::max(J_max, J_max_[l]);
     }
     const double spread = std::sqrt((D - 1) * variance);
     StretchBounds b;
@@ -75,11 +80,14 @@ class StretchExtremes {
     const double by_mean = std::sqrt(std::max(0.0, mean_min - spread));
     const double by_volume = J > 0 ? J / std::pow(b.max, D - 1) : 0;
     b.min = std::max({by_mean, by_volume, 1e-3});
+    b.J_min = std::max(J, 0.0);
+    b.J_max = std::max(J_max, b.J_min);
     return b;
   }
 
  private:
-  Pack mean_max_ = pack(0), mean_min_ = pack(1e300), variance_ = pack(0), J_min_ = pack(1e300);
+  Pack mean_max_ = pack(0), mean_min_ = pack(1e300), variance_ = pack(0), J_min_ = pack(1e300),
+       J_max_ = pack(0);
 };
 
 }  // namespace taut
