@@ -19,6 +19,8 @@ inline std::uint64_t as_bits(double cell) {
                                  : std::bit_cast<std::uint64_t>(cell);
 }
 
+typedef std::uint32_t Places __attribute__((vector_size(16)));
+
 inline std::uint64_t mix(std::uint64_t h) {  // finaliser of splitmix64 (Steele, Lea and Flood 2014)
   h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9;
   h = (h ^ (h >> 27)) * 0x94d049bb133111eb;
@@ -234,8 +236,11 @@ std::size_t CellGrid<D>::filter(const Box& box, double reach, Workspace& work) c
         d2 = d == 0 ? gap * gap : d2 + gap * gap;
       }
       const unsigned near = graded ? less(d2, max(reach2, load8(sorted_r2 + j))) : less(d2, reach2);
-      const auto& places = mask_tables.places[near];
-      for (int i = 0; i < lanes; ++i) out[i] = j + places[static_cast<std::size_t>(i)];
+      const std::uint32_t* const places = mask_tables.places[near].data();
+      for (int i = 0; i < lanes; i += 4) {
+        const Places four = load_part<Places>(places + i) + j;
+        std::memcpy(out + i, &four, sizeof four);
+      }
       out += mask_tables.count[near];
     }
   return static_cast<std::size_t>(out - work.candidates.data());
