@@ -114,36 +114,55 @@ Analytic neo_hookean_stretch(const Scene& scene, const RunSpec& run, const Sweep
   return exact;
 }
 
-/// End displacement of a bar of the hypoelastic law; nothing where it has no equilibrium at this load.
-Analytic hypoelastic_end(const Scene& scene, const RunSpec& run, const SweepPoint& point,
-                         const ProbeSpec& probe) {
+/// Stretch of a bar of St. Venant–Kirchhoff material with free sides under a dead axial stress: S = E (s^2 -
+/// 1) / 2 and P = s S, or P = S for the corotated form. Nothing in compression beyond the largest load that
+/// the law carries.
+std::optional<double> svk_stretch(double E, double stress, bool corotated) {
+  if (corotated) {
+    const double square = 1 + 2 * stress / E;
+    if (square <= 0) return {};
+    return std::sqrt(square);
+  }
+  const double lowest = 1 / std::sqrt(3.0);  // where P(s) = E s (s^2 - 1) / 2 turns
+  if (stress < E * lowest * (lowest * lowest - 1) / 2) return {};
+  double s = std::max(1.0, std::cbrt(2 * std::abs(stress) / E) + 1);
+  for (int i = 0; i < 60; ++i) s -= (E * s * (s * s - 1) / 2 - stress) / (E * (3 * s * s - 1) / 2);
+  return s;
+}
+
+/// End displacement of a homogeneous bar of the run's own material.
+Analytic own_law_bar(const Scene& scene, const RunSpec& run, const SweepPoint& point,
+                     const ProbeSpec& probe) {
   const MaterialSpec material = material_of(scene, run, point);
   const BoundarySpec* load = nullptr;
   for (const BoundarySpec& boundary : scene.boundaries)
     if (boundary.type == "load" && boundary.selection.on == "x_max") load = &boundary;
-  if (scene.geometry.type != "box" || !load || material.model != "hypoelastic" ||
+  const bool plane_stress = scene.dimension == 2 && material.parameters.plane == Plane::stress;
+  const bool hypo = material.model == "hypoelastic", corotated = material.model == "corotated_svk";
+  const bool svk = corotated || material.model == "st_venant_kirchhoff";
+  if (scene.geometry.type != "box" || !load || !plane_stress || !(hypo || svk) ||
       probe.type != "displacement" || probe.row != 0)
     fail(probe.reference->place,
-         "[reference] hypoelastic_bar: needs a box, a load on x_max, material hypoelastic and a probe of the "
-         "displacement along x");
-  double area = 1;
-  for (std::size_t d = 1; d < scene.geometry.min.size(); ++d)
-    area *= scene.geometry.max[d] - scene.geometry.min[d];
-  const bool strain = scene.dimension == 2 && material.parameters.plane == Plane::strain;
-  const BarSides sides = scene.dimension == 1 ? BarSides::confined
-                         : strain             ? BarSides::plane_strain
-                                              : BarSides::free;
-  const double sign = load->direction[0] > 0 ? 1 : -1;
-  const auto state = hypoelastic_bar(material.parameters, sides, sign * force_of(*load, point) / area);
-  if (!state) return {};
-  return {(state->stretch - 1) * (scene.geometry.max[0] - scene.geometry.min[0]), {}};
+         "[reference] own_law_bar: needs a box in plane stress, a load on x_max, material hypoelastic, "
+         "st_venant_kirchhoff or "
+         "corotated_svk, and a probe of the displacement along x");
+  const double height = scene.geometry.max[1] - scene.geometry.min[1];
+  const double stress = (load->direction[0] > 0 ? 1 : -1) * force_of(*load, point) / height;
+  std::optional<double> stretch;
+  if (svk) {
+    stretch = svk_stretch(material.parameters.E, stress, corotated);
+  } else if (const auto state = hypoelastic_bar(material.parameters, BarSides::free, stress)) {
+    stretch = state->stretch;
+  }
+  if (!stretch) return {};
+  return {(*stretch - 1) * (scene.geometry.max[0] - scene.geometry.min[0]), {}};
 }
 
 }  // namespace
 
 std::vector<std::string> analytic_names() {
   return {"bar_wave_arrival",      "bar_wave_incident",   "bar_wave_reflection",
-          "bar_wave_transmission", "neo_hookean_stretch", "hypoelastic_bar"};
+          "bar_wave_transmission", "neo_hookean_stretch", "own_law_bar"};
 }
 
 Analytic analytic(const Scene& scene, const RunSpec& run, const SweepPoint& point, const ProbeSpec& probe) {
@@ -152,7 +171,7 @@ Analytic analytic(const Scene& scene, const RunSpec& run, const SweepPoint& poin
   if (name == "bar_wave_incident") return bar_wave_incident(scene, point, probe);
   if (name == "bar_wave_reflection") return interface(scene, run, point, probe, false);
   if (name == "bar_wave_transmission") return interface(scene, run, point, probe, true);
-  if (name == "hypoelastic_bar") return hypoelastic_end(scene, run, point, probe);
+  if (name == "own_law_bar") return own_law_bar(scene, run, point, probe);
   return neo_hookean_stretch(scene, run, point, probe);
 }
 
