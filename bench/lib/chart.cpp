@@ -73,6 +73,13 @@ std::string log_ticks(const Extent& e) {
   return '(' + ticks + ')';
 }
 
+std::string given_ticks(const std::vector<double>& values) {
+  std::string ticks;
+  for (const double value : values)
+    ticks += fmt::format("{}'{:g}' {}", ticks.empty() ? "" : ", ", value, value);
+  return '(' + ticks + ')';
+}
+
 /// Columns of the legend: one where labels are long.
 int legend_columns(const Chart& chart) {
   std::size_t longest = 0;
@@ -106,7 +113,9 @@ std::string script_of(const Chart& chart) {
       "lw 1 lt 1\n"
       "set key below left vertical samplen 2.5 spacing 1.15 width 1 Left reverse noenhanced\n";
   out += fmt::format("set key maxrows {}\n", legend_rows(chart));
-  if (chart.log_x) out += "set logscale x\nset xtics " + log_ticks(x) + '\n';
+  if (chart.log_x)
+    out += "set logscale x\nset xtics " +
+           (chart.x_ticks.empty() ? log_ticks(x) : given_ticks(chart.x_ticks)) + '\n';
   if (chart.log_y) out += "set logscale y\nset ytics " + log_ticks(y) + '\n';
   if (!chart.log_x && std::max(std::abs(x.min), std::abs(x.max)) < 1e-2) out += "set format x '%.1s %c'\n";
   out += fmt::format("set xrange [{}:{}]\nset yrange [{}:{}]\n", x.min, x.max, y.min, y.max);

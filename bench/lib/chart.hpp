@@ -29,6 +29,7 @@ struct Chart {
   bool log_x = false, log_y = false;
   bool line_at_zero = false;
   std::vector<Series> series;
+  std::vector<double> x_ticks = {};  ///< on a logarithmic axis, instead of automatic ones
 
   bool empty() const;
 };

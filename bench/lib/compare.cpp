@@ -143,9 +143,12 @@ void run_compare(const CommonOptions& common, const CompareOptions& options) {
       }
   }
   report.wall_s = seconds_since(start);
-  write_report(report, common.out);
-  if (!gnuplot_available())
+  const std::vector<std::string> missing = write_report(report, common.out);
+  if (!gnuplot_available()) {
     progress.say("gnuplot was not found: charts are left as tables (charts/*.csv), pictures are left out.");
+  } else {
+    for (const std::string& what : missing) fmt::print(stderr, "taut-compare: cannot draw {}\n", what);
+  }
   progress.say(fmt::format("{} cases in {:.1f} s. Look at {}", total, report.wall_s,
                            (common.out / "report.html").string()));
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <lib/gnuplot.hpp>
 #include <lib/picture.hpp>
+#include <lib/scene_charts.hpp>
 
 namespace taut::bench {
 namespace {
@@ -68,6 +69,14 @@ std::string verdict(const CaseResult& c) {
   return "completed";
 }
 
+/// Whether all of a finished case's quantities with a truth meet the scene's accuracy.
+bool within_accuracy(const CaseResult& c) {
+  return std::all_of(c.measured.begin(), c.measured.end(), [&](const Measured& m) {
+    const auto e = shared_error(m);
+    return !e || std::abs(*e) <= c.scene->accuracy;
+  });
+}
+
 /// The frame of all panels: the bodies as they should be, and a margin; what flies apart is cut off.
 Frame frame_of(const std::vector<const CaseResult*>& cases) {
   Frame frame;
@@ -102,7 +111,7 @@ std::string panel(const CaseResult& c, const std::string& name, const Frame& fra
   std::string out =
       fmt::format("$p{} << EOD\n{}EOD\n$o{} << EOD\n{}EOD\n", number, data.empty() ? "NaN NaN NaN\n" : data,
                   number, lines.empty() ? "NaN NaN\n" : lines);
-  const char* colour = c.broke ? "#C0392B" : "#1E7B45";
+  const char* colour = c.broke ? "#C0392B" : within_accuracy(c) ? "#1E7B45" : "#A86400";
   out += fmt::format("set label 1 {} at graph 0, 1.0 left offset 0,1.75 font ',13' textcolor rgb '#111111'\n",
                      quoted(c.run->label));
   out += fmt::format("set label 2 {} at graph 0, 1.0 left offset 0,0.7 font ',12' textcolor rgb '{}'\n",

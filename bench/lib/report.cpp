@@ -202,19 +202,23 @@ void write_values(HtmlPage& page, const SceneReport& part, const ProbeSpec& prob
   if (probe.reference) page.paragraph("In brackets: relative error against the truth.", "quiet");
 }
 
-void write_charts(HtmlPage& page, const SceneReport& part, const std::filesystem::path& out) {
+void write_charts(HtmlPage& page, const SceneReport& part, const std::filesystem::path& out,
+                  std::vector<std::string>& missing) {
   for (const Chart& chart : charts_of(*part.scene, part.cases)) {
     std::string why;
     if (write_chart(chart, out / "charts", why))
       page.figure(out / "charts" / (chart.name + ".svg"), chart.title + ". " + chart.caption);
-    else
+    else {
+      missing.push_back("charts/" + chart.name + ".svg: " + why);
       page.paragraph(
           fmt::format("{}: no chart ({}); its numbers are in charts/{}.csv.", chart.title, why, chart.name),
           "quiet");
+    }
   }
 }
 
-void write_pictures(HtmlPage& page, const SceneReport& part, const std::filesystem::path& out) {
+void write_pictures(HtmlPage& page, const SceneReport& part, const std::filesystem::path& out,
+                    std::vector<std::string>& missing) {
   const std::vector<SweepPoint> points = part.scene->points();
   for (std::size_t i = 0; i < part.scene->pictures.size(); ++i) {
     const PictureSpec& picture = part.scene->pictures[i];
@@ -232,8 +236,10 @@ void write_pictures(HtmlPage& page, const SceneReport& part, const std::filesyst
                   picture.title +
                       ". Particles at their deformed places, coloured by stress; dashed: the "
                       "undeformed outline. A run that broke is shown in its last good state.");
-    else
+    else {
+      missing.push_back("pictures/" + name + ": " + why);
       page.paragraph(fmt::format("{}: no picture ({}).", picture.title, why), "quiet");
+    }
   }
 }
 
@@ -262,7 +268,8 @@ void write_cases(const Report& report, const std::filesystem::path& out) {
 
 }  // namespace
 
-void write_report(const Report& report, const std::filesystem::path& out) {
+std::vector<std::string> write_report(const Report& report, const std::filesystem::path& out) {
+  std::vector<std::string> missing;
   write_cases(report, out);
   const bool one = report.scenes.size() == 1;
   HtmlPage page(one ? report.scenes[0].scene->title
@@ -280,9 +287,9 @@ void write_report(const Report& report, const std::filesystem::path& out) {
     if (!one) page.heading(2, part.scene->title);
     if (!part.scene->description.empty()) page.paragraph(part.scene->description);
     page.paragraph(verdict(part), "lead");
-    write_pictures(page, part, out);
+    write_pictures(page, part, out, missing);
     write_runs(page, part);
-    write_charts(page, part, out);
+    write_charts(page, part, out, missing);
     write_broken(page, part);
     for (const ProbeSpec& probe : part.scene->probes) write_values(page, part, probe);
     page.paragraph(fmt::format("Scene file: {}. The numbers are in results.csv (one row a quantity) and "
@@ -292,6 +299,7 @@ void write_report(const Report& report, const std::filesystem::path& out) {
                    "quiet");
   }
   write_file(out / "report.html", page.str());
+  return missing;
 }
 
 }  // namespace taut::bench

@@ -22,7 +22,8 @@ struct Report {
   std::vector<SceneReport> scenes;
 };
 
-/// Writes report.html, cases.csv, charts/ and pictures/ under `out`. \throws RunError
-void write_report(const Report& report, const std::filesystem::path& out);
+/// Writes report.html, cases.csv, charts/ and pictures/ under `out`. Returns what could not be drawn, and
+/// why. \throws RunError
+std::vector<std::string> write_report(const Report& report, const std::filesystem::path& out);
 
 }  // namespace taut::bench

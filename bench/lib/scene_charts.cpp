@@ -46,11 +46,11 @@ std::vector<double> swept(const Scene& scene, const std::string& name) {
   return {};
 }
 
-/// The sweep without one variable: one chart for each point of it.
-std::vector<SweepPoint> others(const Scene& scene, const std::string& name) {
+/// The sweep without some variables: one chart for each point of it.
+std::vector<SweepPoint> others(const Scene& scene, const std::vector<std::string>& names) {
   std::vector<SweepPoint> points;
   for (SweepPoint point : scene.points()) {
-    point.erase(name);
+    for (const std::string& name : names) point.erase(name);
     if (std::find(points.begin(), points.end(), point) == points.end()) points.push_back(point);
   }
   return points;
@@ -64,6 +64,21 @@ Cases select(const std::vector<CaseResult>& cases, const RunSpec& run, const Swe
     if (c.run == &run &&
         std::all_of(part.begin(), part.end(), [&](const auto& e) { return c.point.at(e.first) == e.second; }))
       found.push_back(&c);
+  return found;
+}
+
+/// For each load the case of finest spacing.
+Cases finest(const Cases& cases) {
+  Cases found;
+  for (const CaseResult* c : cases) {
+    const auto same = std::find_if(found.begin(), found.end(), [&](const CaseResult* f) {
+      return f->point.at("load") == c->point.at("load");
+    });
+    if (same == found.end())
+      found.push_back(c);
+    else if (c->dx < (*same)->dx)
+      *same = c;
+  }
   return found;
 }
 
@@ -95,10 +110,12 @@ void add_load_charts(const Scene& scene, const std::vector<CaseResult>& cases, c
   Series truth{probe.reference ? probe.reference->label : "", Series::Style::truth, 0, {}, {}, {}, true};
   for (const RunSpec& run : scene.runs) {
     Series values{run.label, Series::Style::run, colour_of(scene, run), {}, {}, {}, true}, errors = values;
-    Cases along = select(cases, run, part);
+    Cases along = finest(select(cases, run, part));
     std::stable_sort(along.begin(), along.end(), [](const CaseResult* a, const CaseResult* b) {
       return a->point.at("load") < b->point.at("load");
     });
+    if (swept(scene, "dx").size() > 1 && !along.empty())
+      values.label = errors.label = fmt::format("{}, dx {:g} mm", run.label, along[0]->dx * 1e3);
     for (const CaseResult* c : along) {
       const Measured* m = measured(*c, probe);
       if (!m) continue;
@@ -145,6 +162,12 @@ void add_load_charts(const Scene& scene, const std::vector<CaseResult>& cases, c
   if (known) charts.push_back(std::move(error));
 }
 
+double largest_load(const Scene& scene) {
+  double largest = 0;
+  for (const double load : swept(scene, "load")) largest = std::max(largest, std::abs(load));
+  return largest;
+}
+
 /// Size of the error against spacing, with lines of first and second order.
 void add_spacing_chart(const Scene& scene, const std::vector<CaseResult>& cases, const ProbeSpec& probe,
                        const SweepPoint& part, std::vector<Chart>& charts) {
@@ -176,6 +199,7 @@ void add_spacing_chart(const Scene& scene, const std::vector<CaseResult>& cases,
     if (!s.x.empty() || !s.broke_x.empty()) chart.series.push_back(std::move(s));
   }
   if (y_max == 0) return;
+  for (const double dx : swept(scene, "dx")) chart.x_ticks.push_back(dx * 1e3);
   for (const int order : {1, 2})
     if (x_min < x_max)
       chart.series.push_back({order == 1 ? "first order" : "second order",
@@ -297,9 +321,12 @@ std::vector<Chart> charts_of(const Scene& scene, const std::vector<CaseResult>& 
   const bool loads = swept(scene, "load").size() > 1, spacings = swept(scene, "dx").size() > 1;
   for (const ProbeSpec& probe : scene.probes) {
     if (loads)
-      for (const SweepPoint& part : others(scene, "load")) add_load_charts(scene, cases, probe, part, charts);
+      for (const SweepPoint& part : others(scene, {"load", "dx"}))
+        add_load_charts(scene, cases, probe, part, charts);
     if (spacings)
-      for (const SweepPoint& part : others(scene, "dx")) add_spacing_chart(scene, cases, probe, part, charts);
+      for (const SweepPoint& part : others(scene, {"dx"}))
+        if (!loads || std::abs(part.at("load")) == largest_load(scene))
+          add_spacing_chart(scene, cases, probe, part, charts);
     for (const SweepPoint& point : scene.points()) add_history_chart(scene, cases, probe, point, charts);
   }
   add_cost_chart(scene, cases, charts);

@@ -127,6 +127,41 @@ TEST_CASE("a run writes everything it promises") {
     CHECK(entry.path().extension() != ".tmp");
 }
 
+TEST_CASE("charts and pictures are drawn where gnuplot is installed") {
+  if (std::system("gnuplot --version >/dev/null 2>&1") != 0) return;
+  write("drawn.toml", taut::test::good_scene + R"(
+[[run]]
+label = "cells"
+formulation = "tl_displacement"
+lattice = "cell_centred"
+
+[[probe]]
+name = "tip_ux_known"
+type = "displacement"
+axis = "x"
+at = [0.2, 0.025]
+reference = 0.002
+
+[sweep]
+load = [500, 1000]
+dx = [0.0125, 0.025]
+
+[[picture]]
+title = "Pulled"
+)");
+  const Outcome outcome = compare("drawn.toml --out drawn --no-fields");
+  REQUIRE(outcome.status == 0);
+  CHECK(outcome.err == "");
+  for (const char* chart : {"small_tip_ux", "small_tip_ux_known", "small_tip_ux_known_error",
+                            "small_tip_ux_known_dx_load_1000_n", "small_cost"}) {
+    CAPTURE(chart);
+    CHECK(content(folder() / "drawn/charts" / (std::string(chart) + ".svg")).find("</svg>") !=
+          std::string::npos);
+  }
+  CHECK(fs::file_size(folder() / "drawn/pictures/small.png") > 1000);
+  CHECK(content(folder() / "drawn/report.html").find("data:image/svg+xml;base64,") != std::string::npos);
+}
+
 TEST_CASE("without gnuplot the numbers are there, and a note") {
   write("sweep.toml",
         taut::test::good_scene + "[sweep]\nload = [500, 1000]\n[[picture]]\ntitle = \"Pulled\"\n");
