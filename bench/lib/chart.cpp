@@ -103,7 +103,7 @@ std::string script_of(const Chart& chart) {
   if (chart.line_at_zero) y.add(0, chart.log_y);
   x = padded_extent(x, chart.log_x, 0.04, 0.04);
   // Rows for the crosses of runs that broke, below everything else.
-  const double room = 0.055 * broken + (broken ? 0.04 : 0);
+  const double room = 0.055 * broken + (broken ? 0.09 : 0);
   y = padded_extent(y, chart.log_y, 0.06 + room, 0.07);
 
   std::string out = fmt::format("set title {} font ',15'\nset xlabel {}\nset ylabel {}\n",
@@ -122,7 +122,8 @@ std::string script_of(const Chart& chart) {
   if (chart.line_at_zero && !chart.log_y)
     out += "set arrow from graph 0, first 0 to graph 1, first 0 nohead lc rgb '#777777' lw 1 back\n";
   if (broken)
-    out += "set label 'broke:' at graph 0.01, graph 0.055 font ',11' textcolor rgb '#666666' offset 0,0.9\n";
+    out += fmt::format("set label 'broke:' at graph 0.01, graph {} font ',11' textcolor rgb '#666666'\n",
+                       0.05 + 0.05 * broken);
 
   std::string plots;
   int row = 0, block = 0;

@@ -256,6 +256,20 @@ void add_cost_chart(const Scene& scene, const std::vector<CaseResult>& cases, st
   if (!chart.empty()) charts.push_back(std::move(chart));
 }
 
+/// What a probe samples, and where: "Cauchy stress xx at (60, 25) mm".
+std::string signal(const ProbeSpec& probe) {
+  const auto axis = [](int number) { return std::string(1, static_cast<char>('x' + number)); };
+  std::string text = probe.type;
+  std::replace(text.begin(), text.end(), '_', ' ');
+  if (probe.type == "cauchy_stress")
+    text = "Cauchy stress " + axis(probe.row) + axis(probe.column);
+  else if (probe.type != "kinetic_energy" && probe.type != "strain_energy")
+    text += ' ' + axis(probe.row);
+  for (std::size_t d = 0; d < probe.at.size(); ++d)
+    text += fmt::format("{}{:g}", d ? ", " : " at (", probe.at[d] * 1e3);
+  return text + (probe.at.empty() ? "" : ") mm");
+}
+
 /// A probe over time under every run, with the exact curve.
 void add_history_chart(const Scene& scene, const std::vector<CaseResult>& cases, const ProbeSpec& probe,
                        const SweepPoint& point, std::vector<Chart>& charts) {
@@ -273,10 +287,10 @@ void add_history_chart(const Scene& scene, const std::vector<CaseResult>& cases,
     }
   const ShownUnit unit = shown_unit(probe.signal_unit(), size), time = shown_unit("s", duration);
   Chart chart{file_name_of(scene.name + ' ' + probe.name + " history " + describe(point)),
-              probe.name + " over time" + suffix(point),
+              signal(probe) + " over time" + suffix(point),
               "",
               "time [" + time.name + "]",
-              fmt::format("{} [{}]", probe.name, unit.name),
+              fmt::format("{} [{}]", signal(probe).substr(0, signal(probe).find(" at ")), unit.name),
               false,
               false,
               true,
@@ -327,7 +341,14 @@ std::vector<Chart> charts_of(const Scene& scene, const std::vector<CaseResult>& 
       for (const SweepPoint& part : others(scene, {"dx"}))
         if (!loads || std::abs(part.at("load")) == largest_load(scene))
           add_spacing_chart(scene, cases, probe, part, charts);
-    for (const SweepPoint& point : scene.points()) add_history_chart(scene, cases, probe, point, charts);
+    // Probes that measure the same signal share a chart, that of the one with a curve to compare with.
+    const auto same = [&](const ProbeSpec& other) { return signal(other) == signal(probe); };
+    const auto shown = std::find_if(scene.probes.begin(), scene.probes.end(), [&](const ProbeSpec& other) {
+      return same(other) && other.reference && other.reference->analytic == "neo_hookean_stretch";
+    });
+    const auto first = std::find_if(scene.probes.begin(), scene.probes.end(), same);
+    if (&probe == &*(shown != scene.probes.end() ? shown : first))
+      for (const SweepPoint& point : scene.points()) add_history_chart(scene, cases, probe, point, charts);
   }
   add_cost_chart(scene, cases, charts);
   std::erase_if(charts, [](const Chart& chart) { return chart.empty(); });

@@ -46,9 +46,8 @@ void read_sweep(const TableReader& top, Scene& scene) {
   if (swept("dx") && !top.has("lattice")) reader.fail_at("dx", "the scene has no [lattice]");
   if (swept("dx"))
     for (const Node& node : top.tables("run"))
-      if (const auto* keys = node.as<NodeTable>())
-        for (const auto& [key, value] : *keys)
-          if (key == "dx") fail(value.place, "[run] dx: a run cannot have its own while [sweep] dx sets it");
+      if (const Node* own = TableReader(node, "run", keys_of("run")).find("dx"))
+        fail(own->place, "[run] dx: a run cannot have its own while [sweep] dx sets it");
 }
 
 void check_labels(const Place& place, const std::string& what, const std::vector<std::string>& wanted,

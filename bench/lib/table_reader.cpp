@@ -25,14 +25,14 @@ std::string join(const std::vector<std::string>& names) { return fmt::format("{}
 TableReader::TableReader(const Node& node, std::string table, const std::vector<std::string>& keys)
     : node_(node), table_(std::move(table)), values_(node.as<NodeTable>()) {
   if (!values_) fail(node.place, fmt::format("[{}] must be a table, but is {}", table_, node.kind()));
-  for (const auto& [key, value] : *values_)
-    if (std::find(keys.begin(), keys.end(), key) == keys.end())
-      fail(value.place, fmt::format("[{}] has no key '{}'; valid: {}", table_, key, join(keys)));
+  for (const Node& entry : values_->entries)
+    if (std::find(keys.begin(), keys.end(), entry.key) == keys.end())
+      fail(entry.place, fmt::format("[{}] has no key '{}'; valid: {}", table_, entry.key, join(keys)));
 }
 
 const Node* TableReader::find(const std::string& key) const {
-  for (const auto& [name, value] : *values_)
-    if (name == key) return &value;
+  for (const Node& entry : values_->entries)
+    if (entry.key == key) return &entry;
   return nullptr;
 }
 

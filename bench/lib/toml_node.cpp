@@ -14,14 +14,15 @@ Place place_of(const toml::source_region& source, const File& file) {
 }
 
 Node convert(const toml::node& node, const File& file) {
-  Node out{place_of(node.source(), file), OtherNode{}};
+  Node out{place_of(node.source(), file), {}, OtherNode{}};
   if (const auto* table = node.as_table()) {
     NodeTable values;
     for (const auto& [key, value] : *table) {
       Node child = convert(value, file);
       // A message about a key should point at the key, not at the far end of its value.
       if (key.source().begin.line) child.place = place_of(key.source(), file);
-      values.emplace_back(std::string(key.str()), std::move(child));
+      child.key = std::string(key.str());
+      values.entries.push_back(std::move(child));
     }
     out.value = std::move(values);
   } else if (const auto* array = node.as_array()) {

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <lib/place.hpp>
 #include <string>
-#include <utility>
 #include <variant>
 #include <vector>
 
@@ -14,11 +13,15 @@ namespace taut::bench {
 
 struct Node;
 using NodeArray = std::vector<Node>;
-using NodeTable = std::vector<std::pair<std::string, Node>>;  ///< in the order of their names
-struct OtherNode {};                                          ///< dates and times: no key takes them
+/// Entries with their `key`, in the order of the keys.
+struct NodeTable {
+  std::vector<Node> entries;
+};
+struct OtherNode {};  ///< dates and times: no key takes them
 
 struct Node {
   Place place;
+  std::string key;  ///< of an entry of a table
   std::variant<OtherNode, bool, std::int64_t, double, std::string, NodeArray, NodeTable> value;
 
   template <class T>
