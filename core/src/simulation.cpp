@@ -4,26 +4,17 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <taut/boundary/constraints.hpp>
-#include <taut/boundary/loads.hpp>
 #include <taut/core/error.hpp>
-#include <taut/core/formulation.hpp>
 #include <taut/core/kernel.hpp>
 #include <taut/core/operators.hpp>
-#include <taut/core/simulation.hpp>
 #include <taut/integrators/integrator.hpp>
-#include <taut/integrators/relax.hpp>
-#include <taut/integrators/step_control.hpp>
 #include <taut/internal/assembly.hpp>
+#include <taut/internal/simulation_impl.hpp>
 #include <taut/neighbors/search.hpp>
 
 namespace taut {
 
 namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 // Names are checked when they are given, not minutes later.
 template <int D>
@@ -37,9 +28,11 @@ void check(const Method& method) {
   one_of("kernel", method.kernel, Kernel::names());
   search_method(method.neighbours);
   if (!(method.support_dx > 1) || method.support_dx > 20)
-    throw InputError(fmt::format("support_dx = {:g} must lie between 1 (nearest neighbours excluded) and 20", method.support_dx));
+    throw InputError(fmt::format("support_dx = {:g} must lie between 1 (nearest neighbours excluded) and 20",
+                                 method.support_dx));
   const auto not_negative = [](const char* what, double value) {
-    if (!(value >= 0) || !std::isfinite(value)) throw InputError(fmt::format("{} = {:g} must not be negative", what, value));
+    if (!(value >= 0) || !std::isfinite(value))
+      throw InputError(fmt::format("{} = {:g} must not be negative", what, value));
   };
   not_negative("zero_energy_control", method.zero_energy_control);
   not_negative("viscosity", method.viscosity);
@@ -48,76 +41,30 @@ void check(const Method& method) {
 
 }  // namespace
 
-const char* to_string(Status status) {
-  switch (status) {
-    case Status::ok: return "ok";
-    case Status::broke: return "broke";
-    case Status::not_converged: return "not_converged";
-  }
-  return "";
+template <int D>
+std::vector<Index> SimulationImpl<D>::select(const Where<D>& where, const char* what) const {
+  must_be_open(what);
+  std::vector<Index> ids;
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (where(cloud.X[i])) ids.push_back(static_cast<Index>(i));
+  if (ids.empty()) throw InputError(fmt::format("{} selects no particle", what));
+  return ids;
+}
+template <int D>
+void SimulationImpl<D>::must_be_open(const char* what) const {
+  if (formulation)
+    throw InputError(fmt::format("{}: set everything before the first run, relax or prepare", what));
+}
+template <int D>
+std::vector<Index> SimulationImpl<D>::places(std::vector<Index> ids) const {
+  for (Index& i : ids) i = place(static_cast<std::size_t>(i));
+  std::sort(ids.begin(), ids.end());
+  return ids;
 }
 
 template <int D>
-struct Simulation<D>::Impl {
-  struct Observer {
-    double interval, next;
-    std::function<void(double)> f;
-  };
-
-  Cloud<D> cloud;
-  Method method;
-  std::vector<std::shared_ptr<const Material<D>>> materials;
-  std::vector<std::uint8_t> material;  // of each user's particle
-  std::vector<typename MirrorMap<D>::Plane> planes;
-  std::vector<std::function<void()>> conditions;  // boundary conditions, applied when places are known
-  std::function<Vec<D>(const Vec<D>&)> initial_velocity, initial_displacement;
-  std::vector<Observer> observers;
-
-  Particles<D> particles;
-  Constraints<D> constraints;
-  Loads<D> loads;
-  std::unique_ptr<Formulation<D>> formulation;
-  StepControl step_control;
-  double time = 0, setup_seconds = 0;
-
-  Index place(std::size_t id) const { return particles.place.at(id); }
-  // Throws when a set-up call comes too late, and gives the ids that `where` selects.
-  std::vector<Index> select(const Where<D>& where, const char* what) const {
-    must_be_open(what);
-    std::vector<Index> ids;
-    for (std::size_t i = 0; i < cloud.size(); ++i)
-      if (where(cloud.X[i])) ids.push_back(static_cast<Index>(i));
-    if (ids.empty()) throw InputError(fmt::format("{} selects no particle", what));
-    return ids;
-  }
-  void must_be_open(const char* what) const {
-    if (formulation) throw InputError(fmt::format("{}: set everything before the first run, relax or prepare", what));
-  }
-  std::vector<Index> places(std::vector<Index> ids) const {
-    for (Index& i : ids) i = place(static_cast<std::size_t>(i));
-    std::sort(ids.begin(), ids.end());
-    return ids;
-  }
-  void add_load(const std::vector<Index>& ids, const Vec<D>& force, History history);
-  void start();
-  double next_step(double cfl, double max_step) const {
-    const double dt = cfl * formulation->stable_step();
-    return max_step > 0 ? std::min(dt, max_step) : dt;
-  }
-  // Fills in the breakdown when the formulation has failed.
-  bool broke(RunResult& result, std::int64_t step) const;
-  void notify(double t) {
-    for (Observer& o : observers)
-      if (t >= o.next) {
-        o.f(t);
-        o.next = o.interval > 0 ? o.interval * (std::floor(t / o.interval * (1 + 1e-12)) + 1) : t;
-      }
-  }
-};
-
-template <int D>
 Simulation<D>::Simulation(Cloud<D> cloud, std::shared_ptr<const Material<D>> material, Method method)
-    : impl_(std::make_unique<Impl>()) {
+    : impl_(std::make_unique<SimulationImpl<D>>()) {
   check<D>(method);
   if (!material) throw InputError("a simulation needs a material");
   if (cloud.size() == 0) throw InputError("the body has no particles");
@@ -126,7 +73,8 @@ Simulation<D>::Simulation(Cloud<D> cloud, std::shared_ptr<const Material<D>> mat
   if (cloud.V.size() != cloud.size())
     throw InputError(fmt::format("the cloud has {} positions but {} volumes", cloud.size(), cloud.V.size()));
   if (!cloud.B.empty() && cloud.B.size() != cloud.size())
-    throw InputError(fmt::format("the cloud has {} positions but {} boundary area vectors", cloud.size(), cloud.B.size()));
+    throw InputError(
+        fmt::format("the cloud has {} positions but {} boundary area vectors", cloud.size(), cloud.B.size()));
   impl_->material.assign(cloud.size(), 0);
   impl_->cloud = std::move(cloud);
   impl_->materials.push_back(std::move(material));
@@ -173,7 +121,8 @@ void Simulation<D>::clamp(const Where<D>& where) {
 
 template <int D>
 void Simulation<D>::roller(const Where<D>& where, int axis) {
-  if (axis < 0 || axis >= D) throw InputError(fmt::format("roller: axis {} is not one of 0 … {}", axis, D - 1));
+  if (axis < 0 || axis >= D)
+    throw InputError(fmt::format("roller: axis {} is not one of 0 … {}", axis, D - 1));
   impl_->conditions.push_back([impl = impl_.get(), axis, ids = impl_->select(where, "roller")] {
     impl->constraints.fix(impl->places(ids), axis);
   });
@@ -182,7 +131,8 @@ void Simulation<D>::roller(const Where<D>& where, int axis) {
 template <int D>
 void Simulation<D>::prescribe(const Where<D>& where, int axis,
                               std::function<double(const Vec<D>&, double)> displacement) {
-  if (axis < 0 || axis >= D) throw InputError(fmt::format("prescribe: axis {} is not one of 0 … {}", axis, D - 1));
+  if (axis < 0 || axis >= D)
+    throw InputError(fmt::format("prescribe: axis {} is not one of 0 … {}", axis, D - 1));
   impl_->conditions.push_back(
       [impl = impl_.get(), axis, ids = impl_->select(where, "prescribe"), f = std::move(displacement)] {
         impl->constraints.prescribe(impl->places(ids), axis, f);
@@ -199,8 +149,9 @@ void Simulation<D>::load(const Where<D>& where, const Vec<D>& force, History his
 }
 
 template <int D>
-void Simulation<D>::Impl::add_load(const std::vector<Index>& ids, const Vec<D>& force, History history) {
-  // Weights: the area that each particle turns towards the mean normal of the selection; even where there is none.
+void SimulationImpl<D>::add_load(const std::vector<Index>& ids, const Vec<D>& force, History history) {
+  // Weights: the area that each particle turns towards the mean normal of the selection; even where there is
+  // none.
   std::vector<double> weight(ids.size(), 1.0);
   if (!cloud.B.empty()) {
     Vec<D> normal = Vec<D>::Zero();
@@ -238,7 +189,8 @@ void Simulation<D>::body_force(const Vec<D>& acceleration, History history) {
 template <int D>
 void Simulation<D>::symmetry_plane(int axis, double at) {
   impl_->must_be_open("symmetry_plane");
-  if (axis < 0 || axis >= D) throw InputError(fmt::format("symmetry_plane: axis {} is not one of 0 … {}", axis, D - 1));
+  if (axis < 0 || axis >= D)
+    throw InputError(fmt::format("symmetry_plane: axis {} is not one of 0 … {}", axis, D - 1));
   double sum = 0;
   for (const Vec<D>& X : impl_->cloud.X) sum += X[axis] - at;
   impl_->planes.push_back({axis, at, sum > 0 ? 0 : 1});
@@ -253,7 +205,7 @@ template <int D>
 void Simulation<D>::prepare() {
   if (impl_->formulation) return;
   const auto start = std::chrono::steady_clock::now();
-  Impl& s = *impl_;
+  SimulationImpl<D>& s = *impl_;
   const double reach = s.method.support_dx * s.cloud.dx * (1 + s.method.skin);
   s.particles = assemble<D>(s.cloud, s.materials, s.material, s.planes, reach);
   for (const auto& condition : s.conditions) condition();
@@ -272,39 +224,8 @@ void Simulation<D>::prepare() {
   if (s.initial_velocity)
     for (Index i = 0; i < s.particles.n; ++i)
       s.particles.v.template set_vec<D>(i, s.initial_velocity(s.particles.X.template vec<D>(i)));
-  s.setup_seconds = seconds_since(start);
+  s.setup_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
-
-template <int D>
-void Simulation<D>::Impl::start() {
-  formulation->constrain_positions(time);
-  formulation->constrain_velocities(time);
-  if (!formulation->evolved().empty()) formulation->update_rates(time);
-  formulation->update_accelerations(time);
-}
-
-template <int D>
-bool Simulation<D>::Impl::broke(RunResult& result, std::int64_t step) const {
-  const auto& failure = formulation->failure();
-  if (!failure) return false;
-  Breakdown b;
-  b.what = failure->what;
-  b.particle = particles.id[static_cast<std::size_t>(failure->particle)];
-  for (int d = 0; d < D; ++d) {
-    b.X[static_cast<std::size_t>(d)] = particles.X.component(d)[failure->particle];
-    b.x[static_cast<std::size_t>(d)] = particles.x.component(d)[failure->particle];
-  }
-  b.time = time;
-  b.step = step;
-  result.status = Status::broke;
-  result.breakdown = b;
-  return true;
-}
-
-namespace {
-// Steps between the checks that cost a sweep over the particles.
-constexpr std::int64_t inspect_every = 32;
-}  // namespace
 
 template <int D>
 RunResult Simulation<D>::run(double duration, const RunOptions& options) {
@@ -313,97 +234,38 @@ RunResult Simulation<D>::run(double duration, const RunOptions& options) {
   if (!(options.cfl > 0)) throw InputError(fmt::format("run: cfl = {:g} must be positive", options.cfl));
   const auto integrator = make_integrator(options.integrator);
   prepare();
-  Impl& s = *impl_;
-  const auto begin = std::chrono::steady_clock::now();
-  const double end = s.time + duration;
-  RunResult result;
-  s.start();
-  s.notify(s.time);
-  while (s.time < end && !s.broke(result, result.steps)) {
-    double dt = s.step_control.next(s.next_step(options.cfl, options.max_step));
-    if (s.time + dt > end * (1 - 1e-14)) dt = end - s.time;
-    integrator->step(*s.formulation, s.time, dt);
-    s.time = s.time + dt >= end * (1 - 1e-14) ? end : s.time + dt;
-    ++result.steps;
-    if (result.steps % inspect_every == 0) s.formulation->inspect();
-    s.notify(s.time);
-    if (options.progress && !options.progress(result.steps, s.time, 1 - (end - s.time) / duration)) break;
-  }
-  s.broke(result, result.steps);
-  result.time = s.time;
-  result.rebuilds = s.formulation->rebuilds();
-  result.loop_seconds = seconds_since(begin);
-  return result;
+  return integrate(*impl_, *integrator, duration, options);
 }
 
 template <int D>
 RunResult Simulation<D>::relax(const RelaxOptions& options) {
-  if (!(options.tolerance > 0)) throw InputError(fmt::format("relax: tolerance = {:g} must be positive", options.tolerance));
+  if (!(options.tolerance > 0))
+    throw InputError(fmt::format("relax: tolerance = {:g} must be positive", options.tolerance));
   if (!(options.cfl > 0)) throw InputError(fmt::format("relax: cfl = {:g} must be positive", options.cfl));
   prepare();
-  Impl& s = *impl_;
-  const auto begin = std::chrono::steady_clock::now();
-  const double start = s.time;
-  if (options.ramp_time > 0)
-    s.loads.set_ramp([start, T = options.ramp_time](double t) {
-      const double q = std::clamp((t - start) / T, 0.0, 1.0);
-      return q * q * (3 - 2 * q);
-    });
-  RunResult result;
-  result.status = Status::not_converged;
-  s.start();
-  const auto undamped = make_integrator("leapfrog");
-  while (s.time - start < options.free_time && result.steps < options.max_steps && !s.broke(result, result.steps)) {
-    const double dt = s.step_control.next(s.next_step(options.cfl, 0));
-    undamped->step(*s.formulation, s.time, dt);
-    s.time += dt;
-    if (++result.steps % inspect_every == 0) s.formulation->inspect();
-    if (options.progress && result.steps % inspect_every == 0 && !options.progress(result.steps, s.time, 0)) break;
-  }
-  Relaxation relaxation(*s.formulation);
-  double largest = 0;
-  // A passing coincidence of small forces is no equilibrium: they must stay small.
-  constexpr int in_a_row = 20;
-  constexpr double still_moving = 1e-4;
-  int converged = 0;
-  while (result.steps < options.max_steps && !s.broke(result, result.steps)) {
-    const double dt = s.next_step(options.cfl, 0);
-    relaxation.step(s.time, dt);
-    s.time += dt;
-    ++result.steps;
-    if (result.steps % inspect_every == 0) s.formulation->inspect();
-    largest = std::max(largest, relaxation.force_norm());
-    const double applied = s.loads.norm(s.time, s.particles.m);
-    const double scale = applied > 0 ? applied : largest;
-    result.residual = scale > 0 ? relaxation.force_norm() / scale : 0;
-    if (options.progress && result.steps % inspect_every == 0 &&
-        !options.progress(result.steps, s.time, std::min(1.0, std::log(std::max(result.residual, 1e-300)) / std::log(options.tolerance))))
-      break;
-    const bool small = s.time - start >= options.ramp_time && result.residual <= options.tolerance &&
-                       (relaxation.remaining_motion() <= still_moving || result.residual == 0);
-    converged = small ? converged + 1 : 0;
-    if (converged == in_a_row) {
-      result.status = Status::ok;
-      break;
-    }
-  }
-  s.broke(result, result.steps);
-  result.time = s.time;
-  result.rebuilds = s.formulation->rebuilds();
-  result.loop_seconds = seconds_since(begin);
-  return result;
+  return find_equilibrium(*impl_, options);
 }
 
 template <int D>
-std::size_t Simulation<D>::size() const { return impl_->cloud.size(); }
+std::size_t Simulation<D>::size() const {
+  return impl_->cloud.size();
+}
 template <int D>
-double Simulation<D>::time() const { return impl_->time; }
+double Simulation<D>::time() const {
+  return impl_->time;
+}
 template <int D>
-const Method& Simulation<D>::method() const { return impl_->method; }
+const Method& Simulation<D>::method() const {
+  return impl_->method;
+}
 template <int D>
-double Simulation<D>::setup_seconds() const { return impl_->setup_seconds; }
+double Simulation<D>::setup_seconds() const {
+  return impl_->setup_seconds;
+}
 template <int D>
-Vec<D> Simulation<D>::reference_position(std::size_t id) const { return impl_->cloud.X.at(id); }
+Vec<D> Simulation<D>::reference_position(std::size_t id) const {
+  return impl_->cloud.X.at(id);
+}
 
 template <int D>
 Vec<D> Simulation<D>::position(std::size_t id) const {
@@ -479,8 +341,7 @@ double Simulation<D>::kinetic_energy() const {
 }
 template <int D>
 double Simulation<D>::strain_energy() const {
-  const double energy = prepared(*impl_).strain_energy();
-  return energy;
+  return prepared(*impl_).strain_energy();
 }
 template <int D>
 Vec<D> Simulation<D>::linear_momentum() const {
@@ -489,7 +350,9 @@ Vec<D> Simulation<D>::linear_momentum() const {
   return momentum;
 }
 template <int D>
-std::int64_t Simulation<D>::pairs() const { return prepared(*impl_).pairs(); }
+std::int64_t Simulation<D>::pairs() const {
+  return prepared(*impl_).pairs();
+}
 template <int D>
 std::size_t Simulation<D>::bytes() const {
   return prepared(*impl_).bytes() + impl_->particles.bytes();

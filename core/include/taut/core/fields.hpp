@@ -15,8 +15,8 @@
 
 namespace taut {
 
-/// Zeroed memory on a 64-byte boundary, to be given to std::free. Its pages are first touched by the threads of a static
-/// OpenMP schedule, the same that later loop over it. \throws std::bad_alloc
+/// Zeroed memory on a 64-byte boundary, to be given to std::free. Its pages are first touched by the threads
+/// of a static OpenMP schedule, the same that later loop over it. \throws std::bad_alloc
 void* allocate_zeroed(std::size_t bytes);
 
 /// A fixed-size array on 64-byte boundaries, zeroed (see `allocate_zeroed`). Copyable; never grows.

@@ -30,8 +30,8 @@ struct FormulationSetup {
   const Method& method;
 };
 
-/// The spatial discretisation of a body: accelerations from the state of its particles. A new formulation is one
-/// class in one file and one line in `formulation_registry` (formulation.cpp).
+/// The spatial discretisation of a body: accelerations from the state of its particles. A new formulation is
+/// one class in one file and one line in `formulation_registry` (formulation.cpp).
 template <int D>
 class Formulation : public Dynamics {
  public:
@@ -60,7 +60,8 @@ class Formulation : public Dynamics {
   virtual std::size_t bytes() const = 0;
 
  protected:
-  /// Applied loads and constraints on top of the internal accelerations; the last act of update_accelerations.
+  /// Applied loads and constraints on top of the internal accelerations; the last act of
+  /// update_accelerations.
   void finish_accelerations(double t);
 
   Particles<D>& p_;

@@ -19,13 +19,15 @@ class KernelTable;
 /// matrix M_a for each particle,
 ///   F_a = [sum_b x_ab (x) G_ab] M_a^T + F0_a,   x_ab = x_b - x_a,
 ///   f_a = sum_b (Q_a G_ab - Q_b G_ba),     Q_a = V_a P_a M_a,
-/// where, for `standard` and `corrected`, G_ab = w_a w_b grad W_ab = -G_ba with the particles' weights w; `standard`
-/// has w = V and M_a = I / V_a, `corrected` w = dx^D and M_a below. The vectors of `compatible` are not antisymmetric, so
-/// -G_ba is stored beside G_ab. F0 is absent where linear fields are exact; for `standard` it makes F = I + grad u, so that the body is free of
-/// stress at rest. The force is the exact adjoint of the gradient, so linear momentum is kept to round-off.
+/// where, for `standard` and `corrected`, G_ab = w_a w_b grad W_ab = -G_ba with the particles' weights w;
+/// `standard` has w = V and M_a = I / V_a, `corrected` w = dx^D and M_a below. The vectors of `compatible`
+/// are not antisymmetric, so -G_ba is stored beside G_ab. F0 is absent where linear fields are exact; for
+/// `standard` it makes F = I + grad u, so that the body is free of stress at rest. The force is the exact
+/// adjoint of the gradient, so linear momentum is kept to round-off.
 ///
 /// Vectors that are `shared` or `recomputed` are g_ab = grad W_ab instead, without the weights:
-///   F_a = [sum_b w_b x_ab (x) g_ab] M_a^T + F0_a,   f_a = w_a [Q_a s_a + sum_b Q_b g_ab],   Q_a = V_a P_a M_a,
+///   F_a = [sum_b w_b x_ab (x) g_ab] M_a^T + F0_a,   f_a = w_a [Q_a s_a + sum_b Q_b g_ab],   Q_a = V_a P_a
+///   M_a,
 /// M_a = I or [sum_b w_b g_ab (x) X_ab]^-1, s_a = sum_b w_b g_ab / w_a: the same forces to round-off.
 template <int D>
 struct PairOperator {
@@ -44,8 +46,8 @@ struct PairOperator {
   std::shared_ptr<const KernelTable> table;
 
   Field weight;  ///< w, one value a particle
-  Field M;    ///< D×D components, row-major; zero beyond the bodies' particles. Empty when shared
-  Field sum;  ///< D components: sum_b G_ab (or s_a). Empty when shared
+  Field M;       ///< D×D components, row-major; zero beyond the bodies' particles. Empty when shared
+  Field sum;     ///< D components: sum_b G_ab (or s_a). Empty when shared
   // Shared: slice s has M and s_a of block `slice_code[s]`, D×D + D components of eight lanes each.
   AlignedArray<Index> slice_code;
   AlignedArray<double> slice_blocks;
@@ -68,20 +70,22 @@ struct PairOperator {
   }
   std::size_t bytes() const {
     return vectors_f.bytes() + vectors_d.bytes() + adjoint_f.bytes() + adjoint_d.bytes() + code.bytes() +
-           blocks.bytes() + slice_code.bytes() + slice_blocks.bytes() + weight.bytes() + M.bytes() + F0.bytes() + sum.bytes();
+           blocks.bytes() + slice_code.bytes() + slice_blocks.bytes() + weight.bytes() + M.bytes() +
+           F0.bytes() + sum.bytes();
   }
 };
 
 /// Builds the operator that `method` names in the reference configuration.
-/// `corrected`: M_a = [sum_b G_ab (x) X_ab]^-1, so that the gradient of X is I (Randles & Libersky 1996; Bonet & Lok
-/// 1999). The matrix is made from the pair vectors as they are kept, hence linear fields are exact in single precision as
-/// well. Neighbours weigh alike, whatever their volumes: those next to a face of a node-centred lattice, where tributary volumes are half,
-/// then see as much to both sides. At R = 1.5 dx a constant stress so makes the forces of its tractions on the faces and
-/// none inside, to round-off; with volumes as weights a held face carries 3/2 of the stress that it should. `compatible`: the least change of those vectors that also closes:
-/// see taut/internal/compatible_operator.hpp. Needs boundary area vectors; its vectors are stored, in single
-/// precision when the method says `automatic`. \throws InputError for an unknown name (valid ones listed),
-/// missing areas, compatible vectors that are to be shared or recomputed, or a particle whose matrix is
-/// singular: its id, its position, how many neighbours it has, and what to do.
+/// `corrected`: M_a = [sum_b G_ab (x) X_ab]^-1, so that the gradient of X is I (Randles & Libersky 1996;
+/// Bonet & Lok 1999). The matrix is made from the pair vectors as they are kept, hence linear fields are
+/// exact in single precision as well. Neighbours weigh alike, whatever their volumes: those next to a face of
+/// a node-centred lattice, where tributary volumes are half, then see as much to both sides. At R = 1.5 dx a
+/// constant stress so makes the forces of its tractions on the faces and none inside, to round-off; with
+/// volumes as weights a held face carries 3/2 of the stress that it should. `compatible`: the least change of
+/// those vectors that also closes: see taut/internal/compatible_operator.hpp. Needs boundary area vectors;
+/// its vectors are stored, in single precision when the method says `automatic`. \throws InputError for an
+/// unknown name (valid ones listed), missing areas, compatible vectors that are to be shared or recomputed,
+/// or a particle whose matrix is singular: its id, its position, how many neighbours it has, and what to do.
 template <int D>
 PairOperator<D> make_operator(const Method& method, const Particles<D>& particles, const PairList& pairs,
                               const Kernel& kernel, double smoothing_length);

@@ -12,31 +12,34 @@
 
 namespace taut {
 
-/// State of all particles. The first `n` are the bodies', in an order chosen for locality; mirror images of symmetry
-/// planes follow up to `total`; the padding behind carries volume and velocity zero.
+/// State of all particles. The first `n` are the bodies', in an order chosen for locality; mirror images of
+/// symmetry planes follow up to `total`; the padding behind carries volume and velocity zero.
 template <int D>
 struct Particles {
   Index n = 0;
   Index total = 0;
-  double dx = 0;                 ///< nominal spacing [m]
-  std::vector<Index> id;         ///< id[i]: the user's index of particle i
-  std::vector<Index> place;      ///< place[id]: where the user's particle stands
-  Field X, x, v, a;              ///< reference and current position, velocity, acceleration; D components
-  Field V;                       ///< reference volume [m^D], its image's part included for particles on symmetry planes
-  Field m;                       ///< mass [kg] (per unit thickness in 2D, per unit area in 1D)
-  Field m_flat;                  ///< mass, repeated for each component: weights of norms; zero beyond n
-  std::vector<Vec<D>> B;         ///< outward boundary area vectors, or empty
-  std::vector<std::uint8_t> material;                            ///< which of `materials` a particle is of
+  double dx = 0;             ///< nominal spacing [m]
+  std::vector<Index> id;     ///< id[i]: the user's index of particle i
+  std::vector<Index> place;  ///< place[id]: where the user's particle stands
+  Field X, x, v, a;          ///< reference and current position, velocity, acceleration; D components
+  Field V;       ///< reference volume [m^D], its image's part included for particles on symmetry planes
+  Field m;       ///< mass [kg] (per unit thickness in 2D, per unit area in 1D)
+  Field m_flat;  ///< mass, repeated for each component: weights of norms; zero beyond n
+  std::vector<Vec<D>> B;               ///< outward boundary area vectors, or empty
+  std::vector<std::uint8_t> material;  ///< which of `materials` a particle is of
   std::vector<std::shared_ptr<const Material<D>>> materials;
   MirrorMap<D> mirror;
-  std::vector<std::uint8_t> planes;                              ///< how many symmetry planes a particle lies on, or empty
+  std::vector<std::uint8_t> planes;  ///< how many symmetry planes a particle lies on, or empty
 
   /// The part of V that belongs to the modelled side of the symmetry planes.
-  double modelled_share(Index i) const { return planes.empty() ? 1 : 1.0 / (1 << planes[static_cast<std::size_t>(i)]); }
+  double modelled_share(Index i) const {
+    return planes.empty() ? 1 : 1.0 / (1 << planes[static_cast<std::size_t>(i)]);
+  }
 
   std::size_t bytes() const {
     return X.bytes() + x.bytes() + v.bytes() + a.bytes() + V.bytes() + m.bytes() + m_flat.bytes() +
-           (id.size() + place.size()) * sizeof(Index) + B.size() * sizeof(Vec<D>) + material.size() + planes.size();
+           (id.size() + place.size()) * sizeof(Index) + B.size() * sizeof(Vec<D>) + material.size() +
+           planes.size();
   }
 };
 

@@ -17,10 +17,10 @@ namespace taut {
 
 /// How and where a formulation broke. A result, not an error.
 struct Breakdown {
-  std::string what;                 ///< "J <= 0", "not a number", "runaway energy", "lost neighbours"
-  std::int64_t particle = -1;       ///< the user's id: index in the cloud as given
-  std::array<double, 3> X{}, x{};   ///< reference and current position [m] (unused components zero)
-  double time = 0;                  ///< [s]
+  std::string what;                ///< "J <= 0", "not a number", "runaway energy", "lost neighbours"
+  std::int64_t particle = -1;      ///< the user's id: index in the cloud as given
+  std::array<double, 3> X{}, x{};  ///< reference and current position [m] (unused components zero)
+  double time = 0;                 ///< [s]
   std::int64_t step = 0;
 };
 
@@ -33,13 +33,14 @@ struct RunResult {
   Status status = Status::ok;
   std::optional<Breakdown> breakdown;
   std::int64_t steps = 0;
-  double time = 0;           ///< simulated time reached [s]
-  double loop_seconds = 0;   ///< wall time of the time loop
-  double residual = 0;       ///< relax: |out-of-balance force| / |applied force| at the end
-  std::int64_t rebuilds = 0; ///< updated Lagrangian: pair list rebuilds
+  double time = 0;            ///< simulated time reached [s]
+  double loop_seconds = 0;    ///< wall time of the time loop
+  double residual = 0;        ///< relax: |out-of-balance force| / |applied force| at the end
+  std::int64_t rebuilds = 0;  ///< updated Lagrangian: pair list rebuilds
 };
 
-/// Progress of a running loop: steps done, simulated time, fraction done (0..1; an estimate for relax). Return false to stop the run.
+/// Progress of a running loop: steps done, simulated time, fraction done (0..1; an estimate for relax).
+/// Return false to stop the run.
 using Progress = std::function<bool(std::int64_t steps, double time, double fraction)>;
 
 struct RunOptions {
@@ -50,9 +51,9 @@ struct RunOptions {
 };
 
 struct RelaxOptions {
-  double tolerance = 1e-6;       ///< wanted |out-of-balance force| / |applied force|
-  double ramp_time = 0;          ///< loads grow smoothly from zero over this time [s]; 0: full at once
-  double free_time = 0;          ///< motion without damping for this time [s] first: what sudden loads do to a body
+  double tolerance = 1e-6;  ///< wanted |out-of-balance force| / |applied force|
+  double ramp_time = 0;     ///< loads grow smoothly from zero over this time [s]; 0: full at once
+  double free_time = 0;  ///< motion without damping for this time [s] first: what sudden loads do to a body
   std::int64_t max_steps = 10'000'000;
   double cfl = 0.6;
   Progress progress{};
@@ -64,8 +65,11 @@ using Where = std::function<bool(const Vec<D>& X)>;
 /// A history in time.
 using History = std::function<double(double t)>;
 
-/// One or more bodies under one method. Everything is set before the first `run` or `relax`; set-up (ordering,
-/// pair lists, operators) happens then, or when `prepare` is called.
+template <int D>
+struct SimulationImpl;
+
+/// One or more bodies under one method. Everything is set before the first `run` or `relax`; set-up
+/// (ordering, pair lists, operators) happens then, or when `prepare` is called.
 template <int D>
 class Simulation {
  public:
@@ -84,22 +88,25 @@ class Simulation {
   void set_displacement(const std::function<Vec<D>(const Vec<D>& X)>& displacement);
 
   // Boundary conditions and loads. Each \throws InputError when it selects no particle.
-  void clamp(const Where<D>& where);                 ///< displacement zero
-  void roller(const Where<D>& where, int axis);      ///< displacement zero along one axis
+  void clamp(const Where<D>& where);             ///< displacement zero
+  void roller(const Where<D>& where, int axis);  ///< displacement zero along one axis
   /// Displacement along `axis` follows `displacement(X, t)`.
-  void prescribe(const Where<D>& where, int axis, std::function<double(const Vec<D>& X, double t)> displacement);
-  /// Dead load: `force` [N] (per unit thickness in 2D, per unit area in 1D) spread over the selected particles by their boundary
-  /// area along the face normal, or evenly where areas are unknown; times `history`.
+  void prescribe(const Where<D>& where, int axis,
+                 std::function<double(const Vec<D>& X, double t)> displacement);
+  /// Dead load: `force` [N] (per unit thickness in 2D, per unit area in 1D) spread over the selected
+  /// particles by their boundary area along the face normal, or evenly where areas are unknown; times
+  /// `history`.
   void load(const Where<D>& where, const Vec<D>& force, History history = {});
   void body_force(const Vec<D>& acceleration, History history = {});  ///< [m/s^2]
-  /// The body continues as its mirror image beyond the plane X[axis] = `at` [m], which must bound it. Particles on the plane slide in it. The
-  /// loads of a scene are those of the part that is modelled.
+  /// The body continues as its mirror image beyond the plane X[axis] = `at` [m], which must bound it.
+  /// Particles on the plane slide in it. The loads of a scene are those of the part that is modelled.
   void symmetry_plane(int axis, double at);
 
   void prepare();
   RunResult run(double duration, const RunOptions& options = {});
   RunResult relax(const RelaxOptions& options = {});
-  /// Calls `f(t)` at the start and after every `interval` seconds of simulated time (each step when 0) of `run`.
+  /// Calls `f(t)` at the start and after every `interval` seconds of simulated time (each step when 0) of
+  /// `run`.
   void observe(double interval, std::function<void(double t)> f);
 
   // State, in the user's order of particles.
@@ -110,27 +117,28 @@ class Simulation {
   Vec<D> displacement(std::size_t id) const;
   Vec<D> velocity(std::size_t id) const;
   Mat<D> cauchy_stress(std::size_t id) const;
-  Mat<D> first_piola_kirchhoff(std::size_t id) const;   ///< \throws InputError for updated Lagrangian forms
-  Mat<D> deformation_gradient(std::size_t id) const;    ///< \throws InputError for updated Lagrangian forms
+  Mat<D> first_piola_kirchhoff(std::size_t id) const;  ///< \throws InputError for updated Lagrangian forms
+  Mat<D> deformation_gradient(std::size_t id) const;   ///< \throws InputError for updated Lagrangian forms
   double mass(std::size_t id) const;
-  /// Displacement at a reference point: linear least squares over the nearest particles (exact on a particle).
+  /// Displacement at a reference point: linear least squares over the nearest particles (exact on a
+  /// particle).
   Vec<D> displacement_at(const Vec<D>& X) const;
 
-  double kinetic_energy() const;                 ///< [J]
-  double strain_energy() const;                  ///< [J]; hyperelastic total Lagrangian forms only
-  Vec<D> linear_momentum() const;                ///< [kg m/s]
+  double kinetic_energy() const;   ///< [J]
+  double strain_energy() const;    ///< [J]; hyperelastic total Lagrangian forms only
+  Vec<D> linear_momentum() const;  ///< [kg m/s]
 
-  std::int64_t pairs() const;                    ///< directed pairs
-  std::size_t bytes() const;                     ///< memory of state, pair lists and operators
+  std::int64_t pairs() const;  ///< directed pairs
+  std::size_t bytes() const;   ///< memory of state, pair lists and operators
   double setup_seconds() const;
   const Method& method() const;
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  std::unique_ptr<SimulationImpl<D>> impl_;
 };
 
-/// Fields of the present state as VTKHDF (ParaView). \throws RunError when the file cannot be written or this build has no HDF5.
+/// Fields of the present state as VTKHDF (ParaView). \throws RunError when the file cannot be written or this
+/// build has no HDF5.
 template <int D>
 void write_vtkhdf(const std::string& file, const Simulation<D>& simulation);
 /// Whether this build writes VTKHDF files.

@@ -1,0 +1,173 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <taut/integrators/relax.hpp>
+#include <taut/internal/simulation_impl.hpp>
+
+namespace taut {
+
+namespace {
+
+// Constraints, rates and accelerations of the present time.
+template <int D>
+void start(SimulationImpl<D>& s) {
+  s.formulation->constrain_positions(s.time);
+  s.formulation->constrain_velocities(s.time);
+  if (!s.formulation->evolved().empty()) s.formulation->update_rates(s.time);
+  s.formulation->update_accelerations(s.time);
+}
+
+/// What both loops do around a step: count, keep time, look for breakdowns.
+template <int D>
+class Loop {
+ public:
+  explicit Loop(SimulationImpl<D>& simulation) : s_(simulation) { start(s_); }
+
+  RunResult result;
+
+  /// Whether the formulation still holds; else the result says how it broke.
+  bool intact();
+  /// Counts a step that ended at time t.
+  void stepped(double t) {
+    s_.time = t;
+    if (++result.steps % inspect_every == 0) s_.formulation->inspect();
+  }
+  /// Asks every now and then whether to go on.
+  bool stopped(const Progress& progress, double fraction) const {
+    return progress && result.steps % inspect_every == 0 && !progress(result.steps, s_.time, fraction);
+  }
+  RunResult finish();
+
+ private:
+  // Steps between the checks that cost a sweep over the particles.
+  static constexpr std::int64_t inspect_every = 32;
+
+  SimulationImpl<D>& s_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+template <int D>
+bool Loop<D>::intact() {
+  const auto& failure = s_.formulation->failure();
+  if (!failure) return true;
+  const auto at = static_cast<std::size_t>(failure->particle);
+  Breakdown b;
+  b.what = failure->what;
+  b.particle = s_.particles.id[at];
+  for (int d = 0; d < D; ++d) {
+    b.X[static_cast<std::size_t>(d)] = s_.particles.X.component(d)[at];
+    b.x[static_cast<std::size_t>(d)] = s_.particles.x.component(d)[at];
+  }
+  b.time = s_.time;
+  b.step = result.steps;
+  result.status = Status::broke;
+  result.breakdown = b;
+  return false;
+}
+
+template <int D>
+RunResult Loop<D>::finish() {
+  intact();
+  result.time = s_.time;
+  result.rebuilds = s_.formulation->rebuilds();
+  result.loop_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  return result;
+}
+
+template <int D>
+void notify(SimulationImpl<D>& s) {
+  for (auto& o : s.observers)
+    if (s.time >= o.next) {
+      o.f(s.time);
+      o.next = o.interval > 0 ? o.interval * (std::floor(s.time / o.interval * (1 + 1e-12)) + 1) : s.time;
+    }
+}
+
+}  // namespace
+
+const char* to_string(Status status) {
+  switch (status) {
+    case Status::ok:
+      return "ok";
+    case Status::broke:
+      return "broke";
+    case Status::not_converged:
+      return "not_converged";
+  }
+  return "";
+}
+
+template <int D>
+RunResult integrate(SimulationImpl<D>& s, Integrator& integrator, double duration,
+                    const RunOptions& options) {
+  const double end = s.time + duration;
+  Loop<D> loop(s);
+  notify(s);
+  while (s.time < end && loop.intact()) {
+    double bound = options.cfl * s.formulation->stable_step();
+    if (options.max_step > 0) bound = std::min(bound, options.max_step);
+    double dt = s.step_control.next(bound);
+    if (s.time + dt > end * (1 - 1e-14)) dt = end - s.time;
+    integrator.step(*s.formulation, s.time, dt);
+    loop.stepped(s.time + dt >= end * (1 - 1e-14) ? end : s.time + dt);
+    notify(s);
+    if (options.progress && !options.progress(loop.result.steps, s.time, 1 - (end - s.time) / duration))
+      break;
+  }
+  return loop.finish();
+}
+
+template <int D>
+RunResult find_equilibrium(SimulationImpl<D>& s, const RelaxOptions& options) {
+  const double start = s.time;
+  if (options.ramp_time > 0)
+    s.loads.set_ramp([start, T = options.ramp_time](double t) {
+      const double q = std::clamp((t - start) / T, 0.0, 1.0);
+      return q * q * (3 - 2 * q);
+    });
+  Loop<D> loop(s);
+  RunResult& result = loop.result;
+  result.status = Status::not_converged;
+  const auto undamped = make_integrator("leapfrog");
+  while (s.time - start < options.free_time && result.steps < options.max_steps && loop.intact()) {
+    const double dt = s.step_control.next(options.cfl * s.formulation->stable_step());
+    undamped->step(*s.formulation, s.time, dt);
+    loop.stepped(s.time + dt);
+    if (loop.stopped(options.progress, 0)) return loop.finish();
+  }
+  Relaxation relaxation(*s.formulation);
+  double largest = 0;
+  // A passing coincidence of small forces is no equilibrium: they must stay small.
+  constexpr int in_a_row = 20;
+  constexpr double still_moving = 1e-4;
+  int converged = 0;
+  while (result.steps < options.max_steps && loop.intact()) {
+    const double dt = options.cfl * s.formulation->stable_step();
+    relaxation.step(s.time, dt);
+    loop.stepped(s.time + dt);
+    largest = std::max(largest, relaxation.force_norm());
+    const double applied = s.loads.norm(s.time, s.particles.m);
+    const double scale = applied > 0 ? applied : largest;
+    result.residual = scale > 0 ? relaxation.force_norm() / scale : 0;
+    const double progress = std::log(std::max(result.residual, 1e-300)) / std::log(options.tolerance);
+    if (loop.stopped(options.progress, std::min(1.0, progress))) break;
+    const bool small = s.time - start >= options.ramp_time && result.residual <= options.tolerance &&
+                       (relaxation.remaining_motion() <= still_moving || result.residual == 0);
+    converged = small ? converged + 1 : 0;
+    if (converged == in_a_row) {
+      result.status = Status::ok;
+      break;
+    }
+  }
+  return loop.finish();
+}
+
+#define TAUT_INSTANTIATE(D)                                                                    \
+  template RunResult integrate<D>(SimulationImpl<D>&, Integrator&, double, const RunOptions&); \
+  template RunResult find_equilibrium<D>(SimulationImpl<D>&, const RelaxOptions&);
+TAUT_INSTANTIATE(1)
+TAUT_INSTANTIATE(2)
+TAUT_INSTANTIATE(3)
+#undef TAUT_INSTANTIATE
+
+}  // namespace taut
