@@ -2,13 +2,22 @@
 #include <cstdint>
 #include <taut/core/fields.hpp>
 
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
 namespace taut {
 
 void* allocate_zeroed(std::size_t bytes) {
-  constexpr std::size_t align = 64;
+  // Pair loops walk through dozens of places at once: more pages of 4 KB than the processor keeps track of.
+  constexpr std::size_t huge_page = std::size_t{1} << 21;
+  const std::size_t align = bytes >= 2 * huge_page ? huge_page : 64;
   const std::size_t rounded = (bytes + align - 1) / align * align;
   void* memory = std::aligned_alloc(align, rounded);
   if (!memory) throw std::bad_alloc();
+#ifdef __linux__
+  if (align == huge_page) madvise(memory, rounded, MADV_HUGEPAGE);
+#endif
   constexpr std::size_t chunk = 1 << 16;
   char* p = static_cast<char*>(memory);
   const auto chunks = static_cast<std::int64_t>((rounded + chunk - 1) / chunk);
