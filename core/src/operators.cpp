@@ -28,16 +28,16 @@ std::string describe(const Vec<D>& X) {
 // G_ab = w_a w_b grad W_ab for all slots; antisymmetric to the last bit, because every factor is.
 template <int D, class Real>
 void fill_vectors(const Particles<D>& p, const PairList& pairs, const Kernel& kernel, double h,
-                  const Field& weight, AlignedArray<Real>& out) {
+                  const PairOperator<D>& op, AlignedArray<Real>& out) {
   out = AlignedArray<Real>(static_cast<std::size_t>(pairs.slots()) * D * lanes);
-  const double* w = weight.component(0);
+  const double* w = op.weight.empty() ? nullptr : op.weight.component(0);
 #pragma omp parallel for schedule(static)
   for (Index s = 0; s < pairs.slices(); ++s)
     for (Index a = s * lanes; a < std::min<Index>((s + 1) * lanes, pairs.particles()); ++a)
       pairs.for_each(a, [&](Index b, std::int64_t k, int lane) {
         const Vec<D> rab = p.X.template vec<D>(a) - p.X.template vec<D>(b);
         const double r = rab.norm();
-        const double slope = w[a] * w[b] * kernel.derivative(r, h) / r;
+        const double slope = (w ? w[a] * w[b] : op.weight_product) * kernel.derivative(r, h) / r;
         for (int d = 0; d < D; ++d)
           out[static_cast<std::size_t>((k * D + d) * lanes + lane)] = static_cast<Real>(slope * rab[d]);
       });
@@ -53,7 +53,7 @@ struct Moments {
 
 template <int D, class Payload>
 void moments_of_slice(Index s, const PairList& pairs, const Payload& payload, const Columns<D>& X,
-                      const double* weight, Moments<D>& m) {
+                      Moments<D>& m) {
   Pack Xi[D];
   for (int d = 0; d < D; ++d) Xi[d] = load(X.c[d] + s * lanes);
   for (auto& c : m.outer) c = pack(0);
@@ -66,7 +66,6 @@ void moments_of_slice(Index s, const PairList& pairs, const Payload& payload, co
     const PackMask pair = lanes_of(pairs.mask(k));
     for (int d = 0; d < D; ++d) {
       Xab[d] = pair ? at(X.c[d]) - Xi[d] : pack(0);
-      if constexpr (!Payload::has_weights) g[d] *= at(weight);
       gg += g[d] * g[d];
       XX += Xab[d] * Xab[d];
     }
@@ -107,20 +106,21 @@ bool invert_moment(const Moments<D>& m, int l, Coefficients<D>& out) {
 }
 
 template <int D>
-BlockKey key_of(const Coefficients<D>& c, const Pack& weight, double support) {
+BlockKey key_of(const Coefficients<D>& c, double dx) {
   const auto quantised = [](double v) { return static_cast<std::uint64_t>(std::llround(v / alike)); };
+  const double matrix_unit = std::pow(dx, D), sum_unit = std::pow(dx, 1 - D);
   BlockKey key;
   for (int l = 0; l < lanes; ++l) {
-    for (int k = 0; k < D * D; ++k) key.add(quantised(c[k][l]));
-    for (int k = D * D; k < D * D + D; ++k) key.add(quantised(c[k][l] * weight[l] * support));
+    for (int k = 0; k < D * D; ++k) key.add(quantised(c[k][l] * matrix_unit));
+    for (int k = D * D; k < D * D + D; ++k) key.add(quantised(c[k][l] * sum_unit));
   }
   return key;
 }
 
 // M and the sums of all slices, in fields or, where vectors are shared, in a dictionary.
 template <int D, class Payload>
-void fill_matrices(bool corrected, const Particles<D>& p, const PairList& pairs, double support,
-                   const Payload& payload, PairOperator<D>& op) {
+void fill_matrices(bool corrected, const Particles<D>& p, const PairList& pairs, const Payload& payload,
+                   PairOperator<D>& op) {
   const auto total = static_cast<std::size_t>(p.total);
   const Index slices = static_cast<Index>(padded(static_cast<std::size_t>(p.n)) / lanes);
   const Index chunks = (slices + chunk_slices - 1) / chunk_slices;
@@ -133,23 +133,22 @@ void fill_matrices(bool corrected, const Particles<D>& p, const PairList& pairs,
   }
   if (!corrected) op.F0 = Field(total, D * D);
   const Columns<D> X(p.X);
-  const double* w = op.weight.component(0);
+  const double* V = p.V.component(0);
   std::atomic<Index> singular{p.n};
 #pragma omp parallel for schedule(static) if (chunks > 1)
   for (Index chunk = 0; chunk < chunks; ++chunk)
     for (Index s = chunk * chunk_slices; s < std::min((chunk + 1) * chunk_slices, slices); ++s) {
       Moments<D> m;
-      moments_of_slice<D>(s, pairs, payload, X, w, m);
+      moments_of_slice<D>(s, pairs, payload, X, m);
       Coefficients<D> c{};
       for (int l = 0; l < std::min<Index>(lanes, p.n - s * lanes); ++l) {
         const Index a = s * lanes + l;
-        const double factor = Payload::has_weights ? 1 / w[a] : 1;
-        for (int d = 0; d < D; ++d) c[D * D + d][l] = Payload::has_weights ? m.sum[d][l] : m.sum[d][l] / w[a];
+        for (int d = 0; d < D; ++d) c[D * D + d][l] = m.sum[d][l];
         if (!corrected) {
           for (int k = 0; k < D * D; ++k) {
             const double one = k % (D + 1) == 0;
-            c[k][l] = one * factor;
-            op.F0.component(k)[a] = one - factor * m.outer[k][l];
+            c[k][l] = one / V[a];
+            op.F0.component(k)[a] = one - m.outer[k][l] / V[a];
           }
         } else if (!invert_moment<D>(m, l, c)) {
           Index seen = singular.load();
@@ -158,8 +157,8 @@ void fill_matrices(bool corrected, const Particles<D>& p, const PairList& pairs,
         }
       }
       if (shared) {
-        dictionary.put(static_cast<std::size_t>(chunk), static_cast<std::size_t>(s),
-                       key_of<D>(c, load(w + s * lanes), support), [&](double* block) {
+        dictionary.put(static_cast<std::size_t>(chunk), static_cast<std::size_t>(s), key_of<D>(c, p.dx),
+                       [&](double* block) {
                          for (int k = 0; k < D * D + D; ++k) store(block + k * lanes, c[k]);
                        });
       } else {
@@ -179,12 +178,13 @@ AlignedArray<float> rounded(const AlignedArray<double>& values) {
 
 // What `automatic` means for these particles.
 template <int D>
-PairPrecision resolve(const Method& method, const Particles<D>& p, const PairList& pairs, double support) {
+PairPrecision resolve(const Method& method, const Particles<D>& p, const PairList& pairs, double support,
+                      const Field& weights) {
   const bool compatible = method.operators == "compatible";
   if (method.pair_precision == PairPrecision::automatic) {
     // A slot that nothing is shared with costs twice the bytes of one in single precision.
     constexpr double worthwhile = 0.4;
-    return !compatible && distinct_fraction<D>(p, pairs, support) < worthwhile
+    return !compatible && distinct_fraction<D>(p, pairs, support, weights) < worthwhile
                ? PairPrecision::shared
                : PairPrecision::single_precision;
   }
@@ -209,15 +209,17 @@ PairOperator<D> make_operator(const Method& method, const Particles<D>& p, const
     throw InputError(fmt::format("unknown operators \"{}\"; valid: {}", name, join_names(names)));
   const bool compatible = name == "compatible";
   const double support = kernel.radius_factor() * h;
-  const PairPrecision precision = resolve<D>(method, p, pairs, support);
 
   PairOperator<D> op;
+  if (name == "standard")
+    op.weight = p.V;
+  else
+    op.weight_product = std::pow(p.dx, 2 * D);
+  const PairPrecision precision = resolve<D>(method, p, pairs, support, op.weight);
   op.precision = compatible ? PairPrecision::double_precision : precision;
-  op.weight = p.V;
-  if (name != "standard") std::fill_n(op.weight.data(), p.total, std::pow(p.dx, D));
   switch (op.precision) {
     case PairPrecision::double_precision:
-      fill_vectors(p, pairs, kernel, h, op.weight, op.vectors_d);
+      fill_vectors(p, pairs, kernel, h, op, op.vectors_d);
       break;
     case PairPrecision::shared:
       share_vectors<D>(p, pairs, kernel, h, op);
@@ -226,11 +228,11 @@ PairOperator<D> make_operator(const Method& method, const Particles<D>& p, const
       op.table = std::make_shared<const KernelTable>(kernel, h);
       break;
     default:
-      fill_vectors(p, pairs, kernel, h, op.weight, op.vectors_f);
+      fill_vectors(p, pairs, kernel, h, op, op.vectors_f);
   }
   const auto make_matrices = [&] {
     with_payload<D>(op, pairs, p.X, [&](const auto& payload) {
-      fill_matrices<D>(name != "standard", p, pairs, support, payload, op);
+      fill_matrices<D>(name != "standard", p, pairs, payload, op);
     });
   };
   make_matrices();

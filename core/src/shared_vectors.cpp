@@ -35,14 +35,25 @@ BlockKey key_of(const Pack (&r)[D], std::uint8_t mask, double per_quantum) {
   return key;
 }
 
+// f(k, key, r, w): offsets and w_a w_b of each slot. `weights` may be empty where all are alike.
 template <int D, class F>
-void for_keys(const Particles<D>& p, const PairList& pairs, double support, Index chunk, F&& f) {
+void for_keys(const Particles<D>& p, const PairList& pairs, double support, const Field& weights, Index chunk,
+              F&& f) {
   const Columns<D> X(p.X);
+  const double* weight = weights.empty() ? nullptr : weights.component(0);
+  const double per_quantum = 1 / (alike * std::pow(p.dx, 2 * D));
   for (Index s = chunk * chunk_slices; s < std::min((chunk + 1) * chunk_slices, pairs.slices()); ++s)
     for_slots(pairs, s, [&](std::int64_t k, auto&& at) {
       Pack r[D];
       offsets<D>(X, s, pairs.mask(k), at, r);
-      f(k, key_of<D>(r, pairs.mask(k), 1 / (alike * support)), r);
+      BlockKey key = key_of<D>(r, pairs.mask(k), 1 / (alike * support));
+      Pack w = pack(1);
+      if (weight) {
+        w = load(weight + s * lanes) * at(weight);
+        for (int l = 0; l < lanes; ++l)
+          if (pairs.mask(k) >> l & 1) key.add(static_cast<std::uint64_t>(std::llround(w[l] * per_quantum)));
+      }
+      f(k, key, r, w);
     });
 }
 
@@ -51,16 +62,17 @@ Index chunks_of(const PairList& pairs) { return (pairs.slices() + chunk_slices -
 }  // namespace
 
 template <int D>
-double distinct_fraction(const Particles<D>& p, const PairList& pairs, double support) {
+double distinct_fraction(const Particles<D>& p, const PairList& pairs, double support, const Field& weights) {
   constexpr Index samples = 8;
   const Index chunks = chunks_of(pairs), step = std::max(1, chunks / samples);
   std::size_t slots = 0, distinct = 0;
   for (Index c = 0; c < chunks; c += step) {
     std::unordered_set<BlockKey, BlockKey::Hash> keys;
-    for_keys<D>(p, pairs, support, c, [&](std::int64_t, const BlockKey& key, const Pack(&)[D]) {
-      keys.insert(key);
-      ++slots;
-    });
+    for_keys<D>(p, pairs, support, weights, c,
+                [&](std::int64_t, const BlockKey& key, const Pack(&)[D], Pack) {
+                  keys.insert(key);
+                  ++slots;
+                });
     distinct += keys.size();
   }
   return slots ? static_cast<double>(distinct) / static_cast<double>(slots) : 1;
@@ -75,23 +87,25 @@ void share_vectors(const Particles<D>& p, const PairList& pairs, const Kernel& k
   const double support = kernel.radius_factor() * h;
 #pragma omp parallel for schedule(dynamic) if (chunks > 1)
   for (Index c = 0; c < chunks; ++c)
-    for_keys<D>(p, pairs, support, c, [&](std::int64_t k, const BlockKey& key, const Pack(&r)[D]) {
-      dictionary.put(static_cast<std::size_t>(c), static_cast<std::size_t>(k), key, [&](double* block) {
-        for (int l = 0; l < lanes; ++l) {
-          if (!(pairs.mask(k) >> l & 1)) continue;
-          double r2 = 0;
-          for (int d = 0; d < D; ++d) r2 += r[d][l] * r[d][l];
-          const double distance = std::sqrt(r2), slope = kernel.derivative(distance, h) / distance;
-          for (int d = 0; d < D; ++d) block[d * lanes + l] = slope * r[d][l];
-        }
-      });
-    });
+    for_keys<D>(
+        p, pairs, support, op.weight, c, [&](std::int64_t k, const BlockKey& key, const Pack(&r)[D], Pack w) {
+          dictionary.put(static_cast<std::size_t>(c), static_cast<std::size_t>(k), key, [&](double* block) {
+            for (int l = 0; l < lanes; ++l) {
+              if (!(pairs.mask(k) >> l & 1)) continue;
+              double r2 = 0;
+              for (int d = 0; d < D; ++d) r2 += r[d][l] * r[d][l];
+              const double distance = std::sqrt(r2);
+              const double slope = op.weight_product * w[l] * kernel.derivative(distance, h) / distance;
+              for (int d = 0; d < D; ++d) block[d * lanes + l] = slope * r[d][l];
+            }
+          });
+        });
   dictionary.finish(op.code, op.blocks);
 }
 
-#define TAUT_INSTANTIATE(D)                                                                   \
-  template double distinct_fraction<D>(const Particles<D>&, const PairList&, double);         \
-  template void share_vectors<D>(const Particles<D>&, const PairList&, const Kernel&, double, \
+#define TAUT_INSTANTIATE(D)                                                                         \
+  template double distinct_fraction<D>(const Particles<D>&, const PairList&, double, const Field&); \
+  template void share_vectors<D>(const Particles<D>&, const PairList&, const Kernel&, double,       \
                                  PairOperator<D>&);
 TAUT_INSTANTIATE(1)
 TAUT_INSTANTIATE(2)

@@ -99,7 +99,7 @@ class TlDisplacement final : public Formulation<D> {
   // F without F0 of slice s, outside the step's loops.
   void gradient(Index s, const Field& x, Pack (&F)[D * D]) const {
     with_payload<D>(op_, pairs_, p_.X, [&](const auto& payload) {
-      gradient_of_slice<D>(s, pairs_, payload, Columns<D>(x), op_.weight.component(0), {op_, s}, F);
+      gradient_of_slice<D>(s, pairs_, payload, Columns<D>(x), {op_, s}, F);
     });
   }
 
@@ -137,7 +137,7 @@ template <int D>
 template <class Payload>
 void TlDisplacement<D>::gradient_pass(const Payload& payload) {
   const Columns<D> x(p_.x);
-  const double *V = p_.V.component(0), *weight = op_.weight.component(0);
+  const double* V = p_.V.component(0);
   double* Q[D * D];
   for (int c = 0; c < D * D; ++c) Q[c] = Q_.component(c);
   Index inverted = p_.n;
@@ -152,7 +152,7 @@ void TlDisplacement<D>::gradient_pass(const Payload& payload) {
       PackMask bad{};
       for (Index s = first; s < last; ++s) {
         Pack f[D * D];
-        gradient_of_slice<D>(s, pairs_, payload, x, weight, {op_, s}, f);
+        gradient_of_slice<D>(s, pairs_, payload, x, {op_, s}, f);
         add_offset(s, f);
         if ((s + 1) * lanes > p_.n) fill_padding(s, f);
         bad |= ~(mine.add(f) > 0);
@@ -204,13 +204,13 @@ template <int D>
 template <class Payload>
 void TlDisplacement<D>::force_pass(const Payload& payload) {
   const Columns<D * D> Q(Q_);
-  const double *m = p_.m.component(0), *weight = op_.weight.component(0);
+  const double* m = p_.m.component(0);
   double* a[D];
   for (int d = 0; d < D; ++d) a[d] = p_.a.component(d);
 #pragma omp parallel for schedule(static) if (p_.n > parallel_from)
   for (Index s = 0; s < groups_.slices(); ++s) {
     Pack force[D];
-    force_of_slice<D>(s, pairs_, payload, Q, weight, {op_, s}, force);
+    force_of_slice<D>(s, pairs_, payload, Q, {op_, s}, force);
     if (control_) control_->add_to(s, p_.x, force);
     const Index i = s * lanes;
     const Pack per_mass = 1 / load(m + i);
@@ -288,7 +288,7 @@ double TlDisplacement<D>::largest_frequency() {
 
   const Columns<D> yc(y);
   const Columns<D * D> Q(Q_);
-  const double *weight = op_.weight.component(0), *m = p_.m.component(0);
+  const double* m = p_.m.component(0);
   constexpr Index block = 512;  // slices; sums are made block by block, whatever the threads
   const Index blocks = (groups_.slices() + block - 1) / block;
   struct Products {
@@ -303,7 +303,7 @@ double TlDisplacement<D>::largest_frequency() {
       for (Index s = 0; s < groups_.slices(); ++s) {
         const SliceCoefficients<D> of(op_, s);
         Pack H[D * D];
-        gradient_of_slice<D>(s, pairs_, payload, yc, weight, of, H);
+        gradient_of_slice<D>(s, pairs_, payload, yc, of, H);
         const Pack factor = load(stiffness.component(0) + s * lanes);
         for (int d = 0; d < D; ++d)
           for (int e = 0; e < D; ++e) {
@@ -318,7 +318,7 @@ double TlDisplacement<D>::largest_frequency() {
         Pack yy = pack(0), ya = pack(0), aa = pack(0);
         for (Index s = b * block; s < std::min((b + 1) * block, groups_.slices()); ++s) {
           Pack force[D];
-          force_of_slice<D>(s, pairs_, payload, Q, weight, {op_, s}, force);
+          force_of_slice<D>(s, pairs_, payload, Q, {op_, s}, force);
           const Index i = s * lanes;
           const Pack mass = load(m + i);
           for (int d = 0; d < D; ++d) {

@@ -24,11 +24,6 @@ class KernelTable;
 /// are not antisymmetric, so -G_ba is stored beside G_ab. F0 is absent where linear fields are exact; for
 /// `standard` it makes F = I + grad u, so that the body is free of stress at rest. The force is the exact
 /// adjoint of the gradient, so linear momentum is kept to round-off.
-///
-/// Vectors that are `shared` or `recomputed` are g_ab = grad W_ab instead, without the weights:
-///   F_a = [sum_b w_b x_ab (x) g_ab] M_a^T + F0_a,   f_a = w_a [Q_a s_a + sum_b Q_b g_ab],   Q_a = V_a P_a
-///   M_a,
-/// M_a = I or [sum_b w_b g_ab (x) X_ab]^-1, s_a = sum_b w_b g_ab / w_a: the same forces to round-off.
 template <int D>
 struct PairOperator {
   PairPrecision precision = PairPrecision::single_precision;  ///< never `automatic`
@@ -45,10 +40,11 @@ struct PairOperator {
   // Recomputed.
   std::shared_ptr<const KernelTable> table;
 
-  Field weight;  ///< w, one value a particle
-  Field M;       ///< D×D components, row-major; zero beyond the bodies' particles. Empty when shared
-  Field sum;     ///< D components: sum_b G_ab (or s_a). Empty when shared
-  // Shared: slice s has M and s_a of block `slice_code[s]`, D×D + D components of eight lanes each.
+  Field weight;               ///< w, one value a particle; empty where all weigh alike
+  double weight_product = 1;  ///< w_a w_b where all weigh alike
+  Field M;    ///< D×D components, row-major; zero beyond the bodies' particles. Empty when shared
+  Field sum;  ///< D components: sum_b G_ab. Empty when shared
+  // Shared: slice s has M and sum of block `slice_code[s]`, D×D + D components of eight lanes each.
   AlignedArray<Index> slice_code;
   AlignedArray<double> slice_blocks;
   Field F0;  ///< D×D components, or empty

@@ -10,10 +10,10 @@
 
 namespace taut {
 
-/// sum_b x_ab (x) G_ab of the eight particles of slice s (row-major); `weight` the particles' weights.
+/// sum_b x_ab (x) G_ab of the eight particles of slice s (row-major).
 template <int D, class Payload>
 TAUT_INLINE void outer_sum_of_slice(Index s, const PairList& pairs, const Payload& payload,
-                                    const Columns<D>& x, const double* weight, Pack (&sum)[D * D]) {
+                                    const Columns<D>& x, Pack (&sum)[D * D]) {
   Pack xi[D];
   for (int d = 0; d < D; ++d) xi[d] = load(x.c[d] + s * lanes);
   for (int c = 0; c < D * D; ++c) sum[c] = pack(0);
@@ -22,10 +22,6 @@ TAUT_INLINE void outer_sum_of_slice(Index s, const PairList& pairs, const Payloa
     Pack g[D], xab[D];
     vectors.get(k, at, g);
     for (int d = 0; d < D; ++d) xab[d] = at(x.c[d]) - xi[d];
-    if constexpr (!Payload::has_weights) {
-      const Pack wb = at(weight);
-      for (int d = 0; d < D; ++d) xab[d] *= wb;
-    }
     for (int e = 0; e < D; ++e)
       for (int d = 0; d < D; ++d) sum[d * D + e] += xab[d] * g[e];
   });
@@ -34,10 +30,9 @@ TAUT_INLINE void outer_sum_of_slice(Index s, const PairList& pairs, const Payloa
 /// F (without F0) of the eight particles of slice s: [sum_b x_ab (x) G_ab] M_a^T.
 template <int D, class Payload>
 TAUT_INLINE void gradient_of_slice(Index s, const PairList& pairs, const Payload& payload,
-                                   const Columns<D>& x, const double* weight, const SliceCoefficients<D>& of,
-                                   Pack (&F)[D * D]) {
+                                   const Columns<D>& x, const SliceCoefficients<D>& of, Pack (&F)[D * D]) {
   Pack sum[D * D];
-  outer_sum_of_slice<D>(s, pairs, payload, x, weight, sum);
+  outer_sum_of_slice<D>(s, pairs, payload, x, sum);
   for (int d = 0; d < D; ++d)
     for (int e = 0; e < D; ++e) {
       F[d * D + e] = sum[d * D] * of.matrix(e * D);
@@ -48,8 +43,7 @@ TAUT_INLINE void gradient_of_slice(Index s, const PairList& pairs, const Payload
 /// Forces on the eight particles of slice s: Q_a sum_b G_ab - sum_b Q_b G_ba, with the first sum given.
 template <int D, class Payload>
 TAUT_INLINE void force_of_slice(Index s, const PairList& pairs, const Payload& payload,
-                                const Columns<D * D>& Q, const double* weight, const SliceCoefficients<D>& of,
-                                Pack (&force)[D]) {
+                                const Columns<D * D>& Q, const SliceCoefficients<D>& of, Pack (&force)[D]) {
   const Index i = s * lanes;
   for (int d = 0; d < D; ++d) {
     force[d] = load(Q.c[d * D] + i) * of.sum(0);
@@ -62,8 +56,6 @@ TAUT_INLINE void force_of_slice(Index s, const PairList& pairs, const Payload& p
     for (int e = 0; e < D; ++e)
       for (int d = 0; d < D; ++d) force[d] += at(Q.c[d * D + e]) * g[e];
   });
-  if constexpr (!Payload::has_weights)
-    for (int d = 0; d < D; ++d) force[d] *= load(weight + i);
 }
 
 }  // namespace taut

@@ -31,12 +31,11 @@ TAUT_INLINE void for_slots(const PairList& pairs, Index s, F&& f) {
     f(k, [at = pairs.block(k)](const double* p) TAUT_INLINE_LAMBDA { return gather(p, at); });
 }
 
-// A payload gives, for one slice, the eight pair vectors of a slot: `slice(s).get(k, at, g)`, zero where the
-// slot has no pair. `has_weights`: they are G_ab, not g_ab (see PairOperator).
+// A payload gives, for one slice, the eight pair vectors G_ab of a slot: `slice(s).get(k, at, g)`, zero where
+// the slot has no pair.
 
 template <int D, class Real>
 struct StoredVectors {
-  static constexpr bool has_weights = true;
   const Real *vectors, *adjoints;
 
   StoredVectors adjoint() const { return {adjoints, vectors}; }
@@ -49,7 +48,6 @@ struct StoredVectors {
 
 template <int D>
 struct SharedVectors {
-  static constexpr bool has_weights = false;
   const Index* code;
   const double* blocks;
 
@@ -64,15 +62,16 @@ struct SharedVectors {
 
 template <int D>
 struct RecomputedVectors {
-  static constexpr bool has_weights = false;
   const KernelTable& table;
   const PairList& pairs;
   Columns<D> X;
+  double factor;         // w_a w_b where all weigh alike
+  const double* weight;  // else their weights
 
   const RecomputedVectors& adjoint() const { return *this; }
   struct Slice {
     const RecomputedVectors& of;
-    Pack Xi[D];
+    Pack Xi[D], factor;
     template <class At>
     TAUT_INLINE void get(std::int64_t k, const At& at, Pack (&g)[D]) const {
       Pack r2 = pack(0);
@@ -82,12 +81,13 @@ struct RecomputedVectors {
       }
       // What is nearer than the support is the list's to say: the table rounds in another order.
       const Pack slope = of.table.slope_over_r(r2);
-      const Pack w = lanes_of(of.pairs.mask(k)) ? slope : pack(0);
+      const Pack weights = of.weight ? factor * at(of.weight) : factor;
+      const Pack w = lanes_of(of.pairs.mask(k)) ? slope * weights : pack(0);
       for (int d = 0; d < D; ++d) g[d] *= w;
     }
   };
   TAUT_INLINE Slice slice(Index s) const {
-    Slice slice{*this, {}};
+    Slice slice{*this, {}, weight ? load(weight + s * lanes) : pack(factor)};
     for (int d = 0; d < D; ++d) slice.Xi[d] = load(X.c[d] + s * lanes);
     return slice;
   }
@@ -125,7 +125,8 @@ auto with_payload(const PairOperator<D>& op, const PairList& pairs, const Field&
     case PairPrecision::shared:
       return f(SharedVectors<D>{op.code.data(), op.blocks.data()});
     case PairPrecision::recomputed:
-      return f(RecomputedVectors<D>{*op.table, pairs, Columns<D>(X)});
+      return f(RecomputedVectors<D>{*op.table, pairs, Columns<D>(X), op.weight_product,
+                                    op.weight.empty() ? nullptr : op.weight.component(0)});
     case PairPrecision::single_precision:
     case PairPrecision::automatic:
       break;

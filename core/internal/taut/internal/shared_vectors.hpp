@@ -15,10 +15,12 @@ namespace taut {
 inline constexpr double alike = 1e-10;
 
 /// Fraction of the slots, in a sample of the list, whose vectors are not those of another slot near by.
+/// `weights` are the particles', or empty where all weigh alike.
 template <int D>
-double distinct_fraction(const Particles<D>& particles, const PairList& pairs, double support);
+double distinct_fraction(const Particles<D>& particles, const PairList& pairs, double support,
+                         const Field& weights);
 
-/// Fills `code` and `blocks` of an operator: g_ab = grad W_ab.
+/// Fills `code` and `blocks` of an operator whose weights are given.
 template <int D>
 void share_vectors(const Particles<D>& particles, const PairList& pairs, const Kernel& kernel, double h,
                    PairOperator<D>& op);
