@@ -19,19 +19,20 @@ TAUT_INLINE void offsets(const Columns<D>& X, Index s, std::uint8_t mask, const 
 
 template <int D>
 BlockKey key_of(const Pack (&r)[D], std::uint8_t mask, double per_quantum) {
-  constexpr std::int64_t factors[3] = {0x2545f4914f6cdd1d, 0x369dea0f31a53f85, 0x27bb2ee687b0b0fd};
+  constexpr std::uint64_t factors[3] = {0x2545f4914f6cdd1d, 0x369dea0f31a53f85, 0x27bb2ee687b0b0fd};
   constexpr double round =
       6755399441055744.0;  // 1.5 * 2^52: what is added to it is rounded to a whole number
-  PackMask word{};
+  typedef std::uint64_t Words __attribute__((vector_size(sizeof(Pack))));  // products wrap around
+  Words word{};
   for (int d = 0; d < D; ++d) {
     const Pack q = r[d] * per_quantum + round;
-    PackMask bits;
+    Words bits;
     std::memcpy(&bits, &q, sizeof bits);
     word += bits * factors[d];
   }
   BlockKey key;
   key.add(mask);
-  for (int l = 0; l < lanes; ++l) key.add(static_cast<std::uint64_t>(word[l]));
+  for (int l = 0; l < lanes; ++l) key.add(word[l]);
   return key;
 }
 

@@ -287,6 +287,7 @@ auto& prepared(const Impl& impl) {
 template <int D>
 Vec<D> Simulation<D>::velocity(std::size_t id) const {
   prepared(*impl_);
+  impl_->look();
   return impl_->particles.v.template vec<D>(impl_->place(id));
 }
 template <int D>

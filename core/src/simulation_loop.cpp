@@ -74,10 +74,26 @@ RunResult Loop<D>::finish() {
   return result;
 }
 
+// Lets whoever looks at velocities have them completed, for as long as it lives.
+template <int D>
+class CompletingVelocities {
+ public:
+  CompletingVelocities(SimulationImpl<D>& s, Integrator& integrator) : s_(s) {
+    s.complete_velocities = [&] { integrator.complete(*s.formulation, s.time); };
+  }
+  ~CompletingVelocities() { s_.complete_velocities = {}; }
+  CompletingVelocities(const CompletingVelocities&) = delete;
+  CompletingVelocities& operator=(const CompletingVelocities&) = delete;
+
+ private:
+  SimulationImpl<D>& s_;
+};
+
 template <int D>
 void notify(SimulationImpl<D>& s) {
   for (auto& o : s.observers)
     if (s.time >= o.next) {
+      s.look();  // before observers may read from many threads
       o.f(s.time);
       o.next = o.interval > 0 ? o.interval * (std::floor(s.time / o.interval * (1 + 1e-12)) + 1) : s.time;
     }
@@ -102,6 +118,7 @@ RunResult integrate(SimulationImpl<D>& s, Integrator& integrator, double duratio
                     const RunOptions& options) {
   const double end = s.time + duration;
   Loop<D> loop(s);
+  const CompletingVelocities completing(s, integrator);
   notify(s);
   while (s.time < end && loop.intact()) {
     double bound = options.cfl * s.formulation->stable_step();
@@ -114,6 +131,7 @@ RunResult integrate(SimulationImpl<D>& s, Integrator& integrator, double duratio
     if (options.progress && !options.progress(loop.result.steps, s.time, 1 - (end - s.time) / duration))
       break;
   }
+  s.look();
   return loop.finish();
 }
 
@@ -129,19 +147,22 @@ RunResult find_equilibrium(SimulationImpl<D>& s, const RelaxOptions& options) {
   RunResult& result = loop.result;
   result.status = Status::not_converged;
   const auto undamped = make_integrator("leapfrog");
-  while (s.time - start < options.free_time && result.steps < options.max_steps && loop.intact()) {
+  bool stopped = false;
+  while (!stopped && s.time - start < options.free_time && result.steps < options.max_steps &&
+         loop.intact()) {
     const double dt = s.step_control.next(options.cfl * s.formulation->stable_step());
     undamped->step(*s.formulation, s.time, dt);
     loop.stepped(s.time + dt);
-    if (loop.stopped(options.progress, 0)) return loop.finish();
+    stopped = loop.stopped(options.progress, 0);
   }
+  undamped->complete(*s.formulation, s.time);
   Relaxation relaxation(*s.formulation);
   double largest = 0;
   // A passing coincidence of small forces is no equilibrium: they must stay small.
   constexpr int in_a_row = 20;
   constexpr double still_moving = 1e-4;
   int converged = 0;
-  while (result.steps < options.max_steps && loop.intact()) {
+  while (!stopped && result.steps < options.max_steps && loop.intact()) {
     const double dt = options.cfl * s.formulation->stable_step();
     relaxation.step(s.time, dt);
     loop.stepped(s.time + dt);
@@ -150,7 +171,7 @@ RunResult find_equilibrium(SimulationImpl<D>& s, const RelaxOptions& options) {
     const double scale = applied > 0 ? applied : largest;
     result.residual = scale > 0 ? relaxation.force_norm() / scale : 0;
     const double progress = std::log(std::max(result.residual, 1e-300)) / std::log(options.tolerance);
-    if (loop.stopped(options.progress, std::min(1.0, progress))) break;
+    stopped = loop.stopped(options.progress, std::min(1.0, progress));
     const bool small = s.time - start >= options.ramp_time && result.residual <= options.tolerance &&
                        (relaxation.remaining_motion() <= still_moving || result.residual == 0);
     converged = small ? converged + 1 : 0;

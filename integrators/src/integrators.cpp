@@ -17,30 +17,29 @@ void after_drift(Dynamics& system, double t, double dt) {
   system.update_accelerations(t);
 }
 
-class Leapfrog final : public Integrator {
+// Velocities live at half steps: v_{n+1/2} = v_{n-1/2} + a_n (dt_{n-1} + dt_n) / 2.
+class CentralDifference : public Integrator {
  public:
   void step(Dynamics& system, double t, double dt) override {
-    kick_drift(system.positions(), system.velocities(), system.accelerations(), dt / 2, dt);
+    kick_drift(system.positions(), system.velocities(), system.accelerations(), owed_ + dt / 2, dt);
     system.constrain_velocities(t + dt / 2);
     after_drift(system, t + dt, dt);
-    add_scaled(system.velocities(), dt / 2, system.accelerations());
-    system.constrain_velocities(t + dt);
+    owed_ = dt / 2;
   }
+
+ protected:
+  double owed_ = 0;  // what velocities lag behind positions
 };
 
-class CentralDifference final : public Integrator {
+// The kick that ends a step and the one that begins the next are one, unless somebody looks in between.
+class Leapfrog final : public CentralDifference {
  public:
-  void step(Dynamics& system, double t, double dt) override {
-    // The velocity of the last half step is kicked to the next: half of the old step and half of the new.
-    const double kick = previous_ < 0 ? dt / 2 : (previous_ + dt) / 2;
-    previous_ = dt;
-    kick_drift(system.positions(), system.velocities(), system.accelerations(), kick, dt);
-    system.constrain_velocities(t + dt / 2);
-    after_drift(system, t + dt, dt);
+  void complete(Dynamics& system, double t) override {
+    if (owed_ == 0) return;
+    add_scaled(system.velocities(), owed_, system.accelerations());
+    system.constrain_velocities(t);
+    owed_ = 0;
   }
-
- private:
-  double previous_ = -1;
 };
 
 }  // namespace

