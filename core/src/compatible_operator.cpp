@@ -3,7 +3,9 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <taut/core/error.hpp>
+#include <taut/integrators/vector_ops.hpp>
 #include <taut/internal/compatible_operator.hpp>
+#include <taut/internal/pair_payload.hpp>
 
 namespace taut {
 
@@ -13,20 +15,26 @@ namespace {
 template <int D>
 class ClosureSystem {
  public:
-  ClosureSystem(const Particles<D>& p, const PairList& pairs, const Kernel& kernel, double h, const PairOperator<D>& op)
-      : p_(p), pairs_(pairs), op_(op), moments_(size(), D * D), mu_(size(), D * D), first_moment_(size(), D) {
-    weight_ = AlignedArray<double>(static_cast<std::size_t>(pairs.slots()) * lanes);
+  ClosureSystem(const Particles<D>& p, const PairList& pairs, const Kernel& kernel, double h,
+                const PairOperator<D>& op)
+      : p_(p),
+        pairs_(pairs),
+        op_(op),
+        weight_(static_cast<std::size_t>(pairs.slots()) * lanes),
+        moments_(size(), D * D),
+        mu_(size(), D * D),
+        first_moment_(size(), D) {
     const double top = kernel.value(0, h);
 #pragma omp parallel for schedule(dynamic, 512)
     for (Index a = 0; a < p.n; ++a) {
       Mat<D> A = Mat<D>::Zero();
       Vec<D> m = Vec<D>::Zero();
-      each_pair(a, [&](Index b, std::int64_t k, int lane, const Vec<D>& X) {
-        const double w = kernel.value(X.norm(), h) / top;
-        weight_[static_cast<std::size_t>(k * lanes + lane)] = w * w;
-        (void)b;
-        A += w * w * X * X.transpose();
-        m += w * w * X;
+      each_pair(a, [&](Index, std::int64_t k, int lane, const Vec<D>& X) {
+        const double W = kernel.value(X.norm(), h) / top;
+        weight_[static_cast<std::size_t>(k * lanes + lane)] = static_cast<float>(W * W);
+        const double w = weight(k, lane);
+        A += w * X * X.transpose();
+        m += w * X;
       });
       moments_.template set_mat<D>(a, A.inverse());
       first_moment_.template set_vec<D>(a, m);
@@ -39,14 +47,24 @@ class ClosureSystem {
   /// mu of all particles for the given lambda.
   void update_mu(Field& lambda) {
     p_.mirror.vectors(lambda);
+    const Columns<D> X(p_.X), l(lambda);
+    const Columns<D * D> inverse(moments_);
 #pragma omp parallel for schedule(static)
-    for (Index a = 0; a < p_.n; ++a) {
-      const Vec<D> la = lambda.template vec<D>(a);
-      Mat<D> sum = Mat<D>::Zero();
-      each_pair(a, [&](Index b, std::int64_t k, int lane, const Vec<D>& X) {
-        sum += weight(k, lane) * (la - lambda.template vec<D>(b)) * X.transpose();
-      });
-      mu_.template set_mat<D>(a, -sum * moments_.template mat<D>(a));
+    for (Index s = 0; s < pairs_.slices(); ++s) {
+      Pack sum[D * D];
+      for (auto& c : sum) c = pack(0);
+      each_slot(s, X, l,
+                [&](std::int64_t, auto&&, const Pack(&wX)[D], Pack, const Pack(&difference)[D])
+                    TAUT_INLINE_LAMBDA {
+                      for (int d = 0; d < D; ++d)
+                        for (int e = 0; e < D; ++e) sum[d * D + e] -= difference[d] * wX[e];
+                    });
+      for (int d = 0; d < D; ++d)
+        for (int e = 0; e < D; ++e) {
+          Pack m = sum[d * D] * load(inverse.c[e] + s * lanes);
+          for (int j = 1; j < D; ++j) m += sum[d * D + j] * load(inverse.c[j * D + e] + s * lanes);
+          store(mu_.component(d * D + e) + s * lanes, m);
+        }
     }
     p_.mirror.tensors(mu_);
   }
@@ -54,21 +72,31 @@ class ClosureSystem {
   /// out = S lambda.
   void apply(Field& lambda, Field& out) {
     update_mu(lambda);
+    const Columns<D> X(p_.X), l(lambda), first(first_moment_);
+    const Columns<D * D> mu(mu_);
 #pragma omp parallel for schedule(static)
-    for (Index a = 0; a < p_.n; ++a) {
-      const Vec<D> la = lambda.template vec<D>(a);
-      const Mat<D> mu = mu_.template mat<D>(a);
-      Vec<D> sum = Vec<D>::Zero();
-      each_pair(a, [&](Index b, std::int64_t k, int lane, const Vec<D>& X) {
-        sum += weight(k, lane) * ((mu + mu_.template mat<D>(b)) * X + 2 * (la - lambda.template vec<D>(b)));
-      });
-      out.template set_vec<D>(a, sum);
+    for (Index s = 0; s < pairs_.slices(); ++s) {
+      Pack sum[D];
+      for (int d = 0; d < D; ++d) {
+        sum[d] = load(mu.c[d * D] + s * lanes) * load(first.c[0] + s * lanes);
+        for (int e = 1; e < D; ++e)
+          sum[d] += load(mu.c[d * D + e] + s * lanes) * load(first.c[e] + s * lanes);
+      }
+      each_slot(s, X, l,
+                [&](std::int64_t, auto&& at, const Pack(&wX)[D], Pack w, const Pack(&difference)[D])
+                    TAUT_INLINE_LAMBDA {
+                      for (int d = 0; d < D; ++d) {
+                        sum[d] += 2 * w * difference[d];
+                        for (int e = 0; e < D; ++e) sum[d] += at(mu.c[d * D + e]) * wX[e];
+                      }
+                    });
+      for (int d = 0; d < D; ++d) store(out.component(d) + s * lanes, sum[d]);
     }
   }
 
-  /// The diagonal of S, one value a particle.
-  Field diagonal() const {
-    Field d(size(), 1);
+  /// One over the diagonal of S, for each component of lambda.
+  Field inverse_diagonal() const {
+    Field inverse(size(), D);
 #pragma omp parallel for schedule(static)
     for (Index a = 0; a < p_.n; ++a) {
       const Vec<D> m = first_moment_.template vec<D>(a);
@@ -77,22 +105,43 @@ class ClosureSystem {
         const double w = weight(k, lane);
         sum += 2 * w - w * w * X.dot(moments_.template mat<D>(b) * X);
       });
-      d.component(0)[a] = sum;
+      for (int d = 0; d < D; ++d) inverse.component(d)[a] = sum > 0 ? 1 / sum : 0;
     }
-    return d;
+    return inverse;
   }
 
-  /// V_a K_a V_b grad W_ab + w^2 (mu_a X_ab + lambda_a - lambda_b), with the matrices of `of`: a itself for G_ab, b for
-  /// -G_ba. One function for both, so that they are the same numbers bit for bit.
-  [[gnu::noinline]] Vec<D> vector(Index of, std::int64_t k, int lane, const Vec<D>& X, const Vec<D>& difference) const {
+  /// V_a K_a V_b grad W_ab + w^2 (mu_a X_ab + lambda_a - lambda_b), with the matrices of `of`: a itself for
+  /// G_ab, b for -G_ba. One function for both, so that they are the same numbers bit for bit.
+  [[gnu::noinline]] Vec<D> vector(Index of, std::int64_t k, int lane, const Vec<D>& X,
+                                  const Vec<D>& difference) const {
     return p_.V.component(0)[of] * (op_.M.template mat<D>(of) * op_.vector(k, lane)) +
            weight(k, lane) * (mu_.template mat<D>(of) * X + difference);
+  }
+
+  /// f(k, at, w X_ab, w, lambda_a - lambda_b) for each slot of a slice, w = 0 where it has no pair.
+  template <class F>
+  TAUT_INLINE void each_slot(Index s, const Columns<D>& X, const Columns<D>& lambda, F&& f) const {
+    Pack Xa[D], la[D];
+    for (int d = 0; d < D; ++d) {
+      Xa[d] = load(X.c[d] + s * lanes);
+      la[d] = load(lambda.c[d] + s * lanes);
+    }
+    for_slots(pairs_, s, [&](std::int64_t k, auto&& at) TAUT_INLINE_LAMBDA {
+      const Pack w = load(weight_.data() + k * lanes);
+      Pack wX[D], difference[D];
+      for (int d = 0; d < D; ++d) {
+        wX[d] = w * (at(X.c[d]) - Xa[d]);
+        difference[d] = la[d] - at(lambda.c[d]);
+      }
+      f(k, at, wX, w, difference);
+    });
   }
 
   template <class F>
   void each_pair(Index a, F&& f) const {
     const Vec<D> Xa = p_.X.template vec<D>(a);
-    pairs_.for_each(a, [&](Index b, std::int64_t k, int lane) { f(b, k, lane, p_.X.template vec<D>(b) - Xa); });
+    pairs_.for_each(a,
+                    [&](Index b, std::int64_t k, int lane) { f(b, k, lane, p_.X.template vec<D>(b) - Xa); });
   }
 
   /// -B_a - sum_b (G_ab - G_ba) of the operator as it came.
@@ -111,28 +160,24 @@ class ClosureSystem {
   }
 
  private:
-  double weight(std::int64_t k, int lane) const { return weight_[static_cast<std::size_t>(k * lanes + lane)]; }
+  double weight(std::int64_t k, int lane) const {
+    return static_cast<double>(weight_[static_cast<std::size_t>(k * lanes + lane)]);
+  }
 
   const Particles<D>& p_;
   const PairList& pairs_;
   const PairOperator<D>& op_;
-  AlignedArray<double> weight_;
+  AlignedArray<float> weight_;  // kernel squared over its value at zero squared
   Field moments_, mu_, first_moment_;
 };
-
-template <int D>
-double dot(const Particles<D>& p, const Field& x, const Field& y) {
-  double sum = 0;
-  for (int d = 0; d < D; ++d)
-    for (Index i = 0; i < p.n; ++i) sum += x.component(d)[i] * y.component(d)[i];
-  return sum;
-}
 
 /// The system has a solution only if the areas close: sum B = 0.
 template <int D>
 void check_areas(const Particles<D>& p) {
   if (p.B.empty())
-    throw InputError("compatible operators need boundary area vectors: use a node-centred lattice, or a CSV cloud with columns bx, by, bz");
+    throw InputError(
+        "compatible operators need boundary area vectors: use a node-centred lattice, or a CSV cloud with "
+        "columns bx, by, bz");
   if (!p.mirror.empty()) return;  // the other half closes what this one leaves open
   Vec<D> sum = Vec<D>::Zero();
   double total = 0;
@@ -141,69 +186,81 @@ void check_areas(const Particles<D>& p) {
     total += B.norm();
   }
   if (sum.norm() > 1e-9 * total)
-    throw InputError(fmt::format("compatible operators: the boundary area vectors sum to {:g} of their total instead of 0", sum.norm() / total));
+    throw InputError(
+        fmt::format("compatible operators: the boundary area vectors sum to {:g} of their total instead of 0",
+                    sum.norm() / total));
 }
 
-}  // namespace
-
-template <int D>
-double make_compatible(const Particles<D>& p, const PairList& pairs, const Kernel& kernel, double h, int iterations,
-                       PairOperator<D>& op) {
-  check_areas(p);
-  p.mirror.tensors(op.M);
-  ClosureSystem<D> system(p, pairs, kernel, h, op);
-
-  // Preconditioned conjugate gradients; the D components are D independent systems taken as one.
-  Field lambda(system.size(), D), residual = system.closure_defect(), direction(system.size(), D), image(system.size(), D),
-        preconditioned(system.size(), D);
-  const Field diagonal = system.diagonal();
-  const double before = std::sqrt(dot(p, residual, residual));
-  // Round-off of the closure of a cell's faces: below it there is nothing to solve for.
-  const double negligible = 1e-14 * std::pow(p.dx, D - 1) * std::sqrt(static_cast<double>(p.n));
-  double rho = 0, now = before;
-  for (int it = 0; it < iterations && now > negligible; ++it) {
-    for (int d = 0; d < D; ++d)
-      for (Index i = 0; i < p.n; ++i)
-        preconditioned.component(d)[i] = residual.component(d)[i] / std::max(diagonal.component(0)[i], 1e-300);
-    const double next = dot(p, residual, preconditioned);
-    const double beta = it == 0 ? 0 : next / rho;
-    rho = next;
-    for (int d = 0; d < D; ++d)
-      for (Index i = 0; i < p.n; ++i)
-        direction.component(d)[i] = preconditioned.component(d)[i] + beta * direction.component(d)[i];
-    system.apply(direction, image);
-    const double alpha = rho / dot(p, direction, image);
-    if (!std::isfinite(alpha)) break;
-    for (int d = 0; d < D; ++d)
-      for (Index i = 0; i < p.n; ++i) {
-        lambda.component(d)[i] += alpha * direction.component(d)[i];
-        residual.component(d)[i] -= alpha * image.component(d)[i];
-      }
-    now = std::sqrt(dot(p, residual, residual));
-  }
-  system.update_mu(lambda);
-
-  AlignedArray<double> own(op.vectors_d.size()), adjoint(op.vectors_d.size());
+/// The new vectors, and what the force is summed with, in place of the old ones.
+template <int D, class Real>
+void fill_compatible(const Particles<D>& p, const ClosureSystem<D>& system, const Field& lambda,
+                     AlignedArray<Real>& vectors, AlignedArray<Real>& adjoints) {
+  AlignedArray<Real> own(vectors.size()), adjoint(vectors.size());
 #pragma omp parallel for schedule(dynamic, 512)
   for (Index a = 0; a < p.total; ++a) {
     const Vec<D> la = lambda.template vec<D>(a);
     system.each_pair(a, [&](Index b, std::int64_t k, int lane, const Vec<D>& X) {
       const Vec<D> difference = la - lambda.template vec<D>(b);
-      const Vec<D> g = system.vector(a, k, lane, X, difference), minus_g_ba = system.vector(b, k, lane, X, difference);
+      const Vec<D> g = system.vector(a, k, lane, X, difference),
+                   minus_g_ba = system.vector(b, k, lane, X, difference);
       for (int d = 0; d < D; ++d) {
         const auto at = static_cast<std::size_t>((k * D + d) * lanes + lane);
-        own[at] = g[d];
-        adjoint[at] = minus_g_ba[d];
+        own[at] = static_cast<Real>(g[d]);
+        adjoint[at] = static_cast<Real>(minus_g_ba[d]);
       }
     });
   }
-  op.vectors_d = std::move(own);
-  op.adjoint_d = std::move(adjoint);
+  vectors = std::move(own);
+  adjoints = std::move(adjoint);
+}
+
+}  // namespace
+
+template <int D>
+double make_compatible(const Particles<D>& p, const PairList& pairs, const Kernel& kernel, double h,
+                       int iterations, PairOperator<D>& op) {
+  check_areas(p);
+  p.mirror.tensors(op.M);
+  ClosureSystem<D> system(p, pairs, kernel, h, op);
+
+  // Preconditioned conjugate gradients; the D components are D independent systems taken as one. Residuals
+  // and images are zero beyond the bodies' particles, so sums may run over whole fields.
+  Field lambda(system.size(), D), residual = system.closure_defect(), direction(system.size(), D),
+                                  image(system.size(), D);
+  const Field inverse = system.inverse_diagonal();
+  const double before = std::sqrt(dot(residual.flat(), residual.flat()));
+  // Round-off of the closure of a cell's faces: below it there is nothing to solve for.
+  const double negligible = 1e-14 * std::pow(p.dx, D - 1) * std::sqrt(static_cast<double>(p.n));
+  double rho = 0, now = before;
+  for (int it = 0; it < iterations && now > negligible; ++it) {
+    const double next = weighted_dot(inverse.flat(), residual.flat(), residual.flat());
+    const double beta = it == 0 ? 0 : next / rho;
+    rho = next;
+    const auto values = static_cast<std::int64_t>(direction.flat().size());
+#pragma omp parallel for simd schedule(static)
+    for (std::int64_t i = 0; i < values; ++i)
+      direction.data()[i] = inverse.data()[i] * residual.data()[i] + beta * direction.data()[i];
+    system.apply(direction, image);
+    const double alpha = rho / dot(direction.flat(), image.flat());
+    if (!std::isfinite(alpha)) break;
+    add_scaled(lambda.flat(), alpha, direction.flat());
+    add_scaled(residual.flat(), -alpha, image.flat());
+    now = std::sqrt(dot(residual.flat(), residual.flat()));
+  }
+  system.update_mu(lambda);
+
+  if (op.precision == PairPrecision::single_precision)
+    fill_compatible(p, system, lambda, op.vectors_f, op.adjoint_f);
+  else
+    fill_compatible(p, system, lambda, op.vectors_d, op.adjoint_d);
   return before > negligible ? now / before : 0;
 }
 
-template double make_compatible<1>(const Particles<1>&, const PairList&, const Kernel&, double, int, PairOperator<1>&);
-template double make_compatible<2>(const Particles<2>&, const PairList&, const Kernel&, double, int, PairOperator<2>&);
-template double make_compatible<3>(const Particles<3>&, const PairList&, const Kernel&, double, int, PairOperator<3>&);
+template double make_compatible<1>(const Particles<1>&, const PairList&, const Kernel&, double, int,
+                                   PairOperator<1>&);
+template double make_compatible<2>(const Particles<2>&, const PairList&, const Kernel&, double, int,
+                                   PairOperator<2>&);
+template double make_compatible<3>(const Particles<3>&, const PairList&, const Kernel&, double, int,
+                                   PairOperator<3>&);
 
 }  // namespace taut

@@ -10,7 +10,6 @@
 #include <taut/internal/compatible_operator.hpp>
 #include <taut/internal/pair_passes.hpp>
 #include <taut/internal/shared_vectors.hpp>
-#include <utility>
 
 namespace taut {
 
@@ -170,12 +169,6 @@ void fill_matrices(bool corrected, const Particles<D>& p, const PairList& pairs,
   if (shared) dictionary.finish(op.slice_code, op.slice_blocks);
 }
 
-AlignedArray<float> rounded(const AlignedArray<double>& values) {
-  AlignedArray<float> out(values.size());
-  std::transform(values.begin(), values.end(), out.begin(), [](double v) { return static_cast<float>(v); });
-  return out;
-}
-
 // What `automatic` means for these particles.
 template <int D>
 PairPrecision resolve(const Method& method, const Particles<D>& p, const PairList& pairs, double support,
@@ -215,8 +208,7 @@ PairOperator<D> make_operator(const Method& method, const Particles<D>& p, const
     op.weight = p.V;
   else
     op.weight_product = std::pow(p.dx, 2 * D);
-  const PairPrecision precision = resolve<D>(method, p, pairs, support, op.weight);
-  op.precision = compatible ? PairPrecision::double_precision : precision;
+  op.precision = resolve<D>(method, p, pairs, support, op.weight);
   switch (op.precision) {
     case PairPrecision::double_precision:
       fill_vectors(p, pairs, kernel, h, op, op.vectors_d);
@@ -238,11 +230,6 @@ PairOperator<D> make_operator(const Method& method, const Particles<D>& p, const
   make_matrices();
   if (compatible) {
     make_compatible(p, pairs, kernel, h, method.compatible_iterations, op);
-    if (precision == PairPrecision::single_precision) {
-      op.vectors_f = rounded(std::exchange(op.vectors_d, {}));
-      op.adjoint_f = rounded(std::exchange(op.adjoint_d, {}));
-      op.precision = precision;
-    }
     make_matrices();  // linear exactness of the vectors as stored
   }
   return op;

@@ -19,7 +19,8 @@ void add_scaled(std::span<double> y, double factor, std::span<const double> x) {
   for (std::int64_t i = 0; i < n; ++i) ys[i] += factor * xs[i];
 }
 
-void kick_drift(std::span<double> x, std::span<double> v, std::span<const double> a, double kick, double drift) {
+void kick_drift(std::span<double> x, std::span<double> v, std::span<const double> a, double kick,
+                double drift) {
   const auto n = static_cast<std::int64_t>(x.size());
   double* xs = x.data();
   double* vs = v.data();
@@ -31,19 +32,34 @@ void kick_drift(std::span<double> x, std::span<double> v, std::span<const double
   }
 }
 
-double weighted_dot(std::span<const double> weight, std::span<const double> x, std::span<const double> y) {
-  const std::int64_t blocks = blocks_of(x.size());
+namespace {
+// Sum of term(i) for i < n, block by block.
+template <class Term>
+double sum_of(std::size_t n, Term&& term) {
+  const std::int64_t blocks = blocks_of(n);
   std::vector<double> partial(static_cast<std::size_t>(blocks));
 #pragma omp parallel for schedule(static) if (blocks > 16)
   for (std::int64_t b = 0; b < blocks; ++b) {
-    const std::size_t end = std::min(x.size(), static_cast<std::size_t>((b + 1) * block));
+    const std::size_t end = std::min(n, static_cast<std::size_t>((b + 1) * block));
     double sum = 0;
-    for (std::size_t i = static_cast<std::size_t>(b * block); i < end; ++i) sum += weight[i] * x[i] * y[i];
+#pragma omp simd reduction(+ : sum)
+    for (std::size_t i = static_cast<std::size_t>(b * block); i < end; ++i) sum += term(i);
     partial[static_cast<std::size_t>(b)] = sum;
   }
   double sum = 0;
   for (const double p : partial) sum += p;
   return sum;
+}
+}  // namespace
+
+double dot(std::span<const double> x, std::span<const double> y) {
+  return sum_of(x.size(), [xs = x.data(), ys = y.data()](std::size_t i) { return xs[i] * ys[i]; });
+}
+
+double weighted_dot(std::span<const double> weight, std::span<const double> x, std::span<const double> y) {
+  return sum_of(x.size(), [w = weight.data(), xs = x.data(), ys = y.data()](std::size_t i) {
+    return w[i] * xs[i] * ys[i];
+  });
 }
 
 }  // namespace taut

@@ -16,7 +16,7 @@ namespace taut {
 /// gradients with the diagonal as preconditioner) is stopped. The system is as ill-conditioned as a biharmonic, but its smooth modes
 /// matter little: `iterations` of 20 to 40 keep nearly all of the gain.
 ///
-/// Expects `op` as `corrected` made it in double precision, and writes its vectors and adjoint vectors.
+/// Expects `op` as `corrected` made it with stored vectors, and writes its vectors and adjoint vectors.
 /// \throws InputError when the particles have no boundary area vectors, or these do not close.
 /// \returns |closure residual| / |closure residual before|.
 template <int D>

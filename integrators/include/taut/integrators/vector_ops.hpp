@@ -11,6 +11,8 @@ namespace taut {
 void add_scaled(std::span<double> y, double factor, std::span<const double> x);
 /// v += kick * a, then x += drift * v, in one pass over memory.
 void kick_drift(std::span<double> x, std::span<double> v, std::span<const double> a, double kick, double drift);
+/// sum of x * y
+double dot(std::span<const double> x, std::span<const double> y);
 /// sum of weight * x * y
 double weighted_dot(std::span<const double> weight, std::span<const double> x, std::span<const double> y);
 
