@@ -201,11 +201,27 @@ void Simulation<D>::observe(double interval, std::function<void(double)> f) {
   impl_->observers.push_back({interval, 0, std::move(f)});
 }
 
+namespace {
+// Boundary areas fit for operators that need them: estimated where there are none, closed where they are given.
+template <int D>
+void enclose(Cloud<D>& cloud) {
+  if (cloud.B.empty()) return estimate_areas(cloud);
+  constexpr double tolerable = 0.2;
+  const double change = close_areas(cloud);
+  if (!(change < tolerable))
+    throw InputError(
+        fmt::format("the boundary area vectors do not enclose the body: closing them (sum B = 0, sum X (x) B = "
+                    "volume) would change them by {:.0f} %. Check their signs and the volumes, or leave them out",
+                    100 * change));
+}
+}  // namespace
+
 template <int D>
 void Simulation<D>::prepare() {
   if (impl_->formulation) return;
   const auto start = std::chrono::steady_clock::now();
   SimulationImpl<D>& s = *impl_;
+  if (s.method.operators == "compatible" && s.planes.empty()) enclose(s.cloud);
   const double reach = s.method.support_dx * s.cloud.dx * (1 + s.method.skin);
   s.particles = assemble<D>(s.cloud, s.materials, s.material, s.planes, reach);
   for (const auto& condition : s.conditions) condition();

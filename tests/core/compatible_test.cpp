@@ -113,8 +113,17 @@ TEST_CASE("compatible operators keep momentum and energy of a free vibration") {
   CHECK(body.kinetic_energy() + body.strain_energy() == doctest::Approx(energy).epsilon(1e-3));
 }
 
-TEST_CASE("compatible operators say that they need areas") {
+TEST_CASE("compatible operators refuse areas that do not enclose the body") {
+  Cloud<2> cloud = make_cloud(box<2>({0, 0}, {1, 1}), {.dx = 0.2});
+  for (auto& B : cloud.B) B *= -1;  // inward
+  Simulation<2> body(std::move(cloud), make_material<2>("neo_hookean", {.E = 1e6, .nu = 0.3, .density = 1000}),
+                     Method{.operators = "compatible"});
+  CHECK_THROWS_WITH_AS(body.prepare(), doctest::Contains("do not enclose the body"), InputError);
+}
+
+TEST_CASE("compatible operators say that they need areas next to symmetry planes") {
   Simulation<2> cells(make_cloud(box<2>({0, 0}, {1, 1}), {.dx = 0.2, .lattice = Lattice::cell_centred}),
                       make_material<2>("neo_hookean", {.E = 1e6, .nu = 0.3, .density = 1000}), Method{.operators = "compatible"});
+  cells.symmetry_plane(0, 0);
   CHECK_THROWS_WITH_AS(cells.prepare(), doctest::Contains("boundary area"), InputError);
 }

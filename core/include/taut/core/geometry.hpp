@@ -105,4 +105,17 @@ std::function<bool(const Vec<D>&)> on_face(const Cloud<D>& cloud, std::string_vi
 template <int D>
 Cloud<D> read_cloud(const std::filesystem::path& file, double dx = 0);
 
+/// Changes the area vectors of surface particles by the least amount (relative to their size) that makes them
+/// enclose the cloud's volume: sum B = 0, sum X (x) B = (sum V) I. Returns the change, sum |dB| / sum |B|.
+/// \throws InputError when the surface particles do not span the space.
+template <int D>
+double close_areas(Cloud<D>& cloud);
+
+/// Finds the surface particles of a cloud without area vectors and gives them some: those whose neighbours
+/// within 2.1 dx leave a cone free, with the direction in which there is nothing as normal and one over the
+/// density of surface particles as area; closed as above. Meant for bodies sampled up to their surface, two
+/// spacings thick or more. \throws InputError when no particle is found on a surface, and as `close_areas`.
+template <int D>
+void estimate_areas(Cloud<D>& cloud);
+
 }  // namespace taut
