@@ -1,0 +1,63 @@
+#include <algorithm>
+#include <lib/files.hpp>
+#include <scaling/job.hpp>
+#include <scaling/scaling.hpp>
+#include <taut/core/error.hpp>
+#include <utility>
+
+namespace taut::bench {
+namespace {
+
+using Part = std::pair<std::string, void (*)(const Job&)>;
+const std::vector<Part>& parts() {
+  static const std::vector<Part> all = {{"stream", measure_machine},
+                                        {"steps", measure_steps},
+                                        {"baselines", measure_baselines},
+                                        {"lists", measure_lists}};
+  return all;
+}
+
+}  // namespace
+
+const std::vector<std::string>& scaling_parts() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> n;
+    for (const Part& part : parts()) n.push_back(part.first);
+    return n;
+  }();
+  return names;
+}
+
+void run_scaling(const CommonOptions& common, const ScalingOptions& options) {
+  for (const std::string& name : options.parts)
+    if (std::find(scaling_parts().begin(), scaling_parts().end(), name) == scaling_parts().end())
+      throw InputError(
+          fmt::format("--parts: unknown part \"{}\"; valid: {}", name, join_names(scaling_parts())));
+  ProgressLine progress(common.quiet, 1);
+  std::vector<Row> rows;
+  Job job{.particles = options.particles,
+          .neighbours = options.neighbours,
+          .threads = common.threads,
+          .repeats = options.repeats > 0 ? options.repeats
+                     : common.quick      ? 3
+                                         : 7,
+          .quick = common.quick,
+          .progress = progress,
+          .rows = rows};
+  if (job.particles.empty())
+    job.particles = common.quick ? std::vector<std::int64_t>{1'000'000}
+                                 : std::vector<std::int64_t>{10'000, 100'000, 1'000'000};
+  if (options.large) job.particles.push_back(10'000'000);
+  if (job.neighbours.empty())
+    job.neighbours = common.quick ? std::vector<int>{18} : std::vector<int>{18, 32, 56, 80};
+  for (const int neighbours : job.neighbours) neighbourhood<3>(neighbours, Arrangement::lattice);
+  for (const auto& [name, measure] : parts()) {
+    if (!options.parts.empty() &&
+        std::find(options.parts.begin(), options.parts.end(), name) == options.parts.end())
+      continue;
+    measure(job);
+    write_results(common.out / "results.csv", rows);
+  }
+}
+
+}  // namespace taut::bench
