@@ -26,6 +26,13 @@ int main(int argc, char** argv) {
   app.add_option("--repeats", options.repeats, "Repeats of each measurement (7; 3 when quick)")
       ->type_name("N")
       ->check(CLI::Range(1, 1000));
+  const auto page =
+      app.add_option("--page", options.page,
+                     "Measure nothing: write this Markdown page from the results of an earlier run")
+          ->type_name("FILE");
+  app.add_option("--from", options.from, "Results of that run (default: results.csv in the output folder)")
+      ->type_name("FILE")
+      ->needs(page);
   return run_executable(app, "taut-scaling", argc, argv,
                         [&](const CommonOptions& common) { run_scaling(common, options); });
 }

@@ -53,6 +53,8 @@ std::string style_of(const Series& s) {
       return "with lines lc rgb '#999999' lw 1 dt 2";
     case Series::Style::printed:
       return fmt::format("with points lc rgb '{}' lw 1.6 pt {} ps 1.15", run_colour(s.colour), hollow[mark]);
+    case Series::Style::bar:
+      return fmt::format("with boxes fill solid 1 noborder lc rgb '{}'", run_colour(s.colour));
     case Series::Style::run:
       break;
   }
@@ -80,6 +82,13 @@ std::string given_ticks(const std::vector<double>& values) {
   return '(' + ticks + ')';
 }
 
+std::string named_ticks(const std::vector<std::string>& names) {
+  std::string ticks;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    ticks += fmt::format("{}{} {}", ticks.empty() ? "" : ", ", quoted(names[i]), i);
+  return '(' + ticks + ')';
+}
+
 /// Columns of the legend: one where labels are long.
 int legend_columns(const Chart& chart) {
   std::size_t longest = 0;
@@ -101,7 +110,8 @@ std::string script_of(const Chart& chart) {
     broken += !s.broke_x.empty();
   }
   if (chart.line_at_zero) y.add(0, chart.log_y);
-  x = padded_extent(x, chart.log_x, 0.04, 0.04);
+  x = chart.x_names.empty() ? padded_extent(x, chart.log_x, 0.04, 0.04)
+                            : Extent{-0.6, static_cast<double>(chart.x_names.size()) - 0.4};
   // Rows for the crosses of runs that broke, below everything else.
   const double room = 0.055 * broken + (broken ? 0.09 : 0);
   y = padded_extent(y, chart.log_y, 0.06 + room, 0.07);
@@ -116,6 +126,12 @@ std::string script_of(const Chart& chart) {
   if (chart.log_x)
     out += "set logscale x\nset xtics " +
            (chart.x_ticks.empty() ? log_ticks(x) : given_ticks(chart.x_ticks)) + '\n';
+  const auto bars = std::count_if(chart.series.begin(), chart.series.end(),
+                                  [](const Series& s) { return s.style == Series::Style::bar; });
+  const double bar_width = 0.8 / static_cast<double>(std::max<std::ptrdiff_t>(bars, 1));
+  if (!chart.x_names.empty())
+    out += fmt::format("set xtics {}\nset boxwidth {}\n", named_ticks(chart.x_names), 0.9 * bar_width);
+  if (bars && !chart.log_y) y.min = 0;
   if (chart.log_y) out += "set logscale y\nset ytics " + log_ticks(y) + '\n';
   if (!chart.log_x && std::max(std::abs(x.min), std::abs(x.max)) < 1e-2) out += "set format x '%.1s %c'\n";
   out += fmt::format("set xrange [{}:{}]\nset yrange [{}:{}]\n", x.min, x.max, y.min, y.max);
@@ -126,14 +142,17 @@ std::string script_of(const Chart& chart) {
                        0.05 + 0.05 * broken);
 
   std::string plots;
-  int row = 0, block = 0;
+  int row = 0, block = 0, bar = 0;
   const auto add = [&](const std::string& what) {
     plots += (plots.empty() ? "plot " : ", \\\n     ") + what;
   };
   for (const Series& s : chart.series) {
     std::string data;
+    const double beside =
+        s.style == Series::Style::bar ? (bar++ - 0.5 * static_cast<double>(bars - 1)) * bar_width : 0;
     for (std::size_t i = 0; i < s.x.size(); ++i)
-      if (std::isfinite(s.x[i]) && std::isfinite(s.y[i])) data += fmt::format("{} {}\n", s.x[i], s.y[i]);
+      if (std::isfinite(s.x[i]) && std::isfinite(s.y[i]))
+        data += fmt::format("{} {}\n", s.x[i] + beside, s.y[i]);
     const std::string title = s.label.empty() ? "notitle" : "title " + quoted(s.label);
     const std::string name = fmt::format("$d{}", block++);
     out += name + " << EOD\n" + (data.empty() ? "NaN NaN\n" : data) + "EOD\n";
@@ -154,7 +173,8 @@ std::string script_of(const Chart& chart) {
 
 bool Chart::empty() const {
   return std::all_of(series.begin(), series.end(), [](const Series& s) {
-    return s.style != Series::Style::run || (s.x.empty() && s.broke_x.empty());
+    return (s.style != Series::Style::run && s.style != Series::Style::bar) ||
+           (s.x.empty() && s.broke_x.empty());
   });
 }
 

@@ -13,7 +13,8 @@ struct Series {
     truth,    ///< black line, drawn on top of nothing else
     run,      ///< coloured line with filled marks
     printed,  ///< hollow marks of the run's colour, no line
-    guide     ///< thin grey dashed line
+    guide,    ///< thin grey dashed line
+    bar       ///< bars at the places of `Chart::x_names`, beside those of other series
   };
   std::string label;
   Style style = Style::run;
@@ -28,8 +29,9 @@ struct Chart {
   std::string title, caption, x_label, y_label;
   bool log_x = false, log_y = false;
   bool line_at_zero = false;
-  std::vector<Series> series;
+  std::vector<Series> series = {};
   std::vector<double> x_ticks = {};  ///< on a logarithmic axis, instead of automatic ones
+  std::vector<std::string> x_names = {};  ///< what stands at x = 0, 1, …, instead of numbers
 
   bool empty() const;
 };

@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cmath>
+#include <fstream>
 #include <lib/files.hpp>
 #include <lib/results.hpp>
+#include <taut/core/error.hpp>
 
 namespace taut::bench {
 namespace {
@@ -18,6 +21,53 @@ template <class T>
 std::string field(const std::optional<T>& number) {
   return number ? fmt::format("{}", *number) : std::string();
 }
+
+/// The fields of one line, quotes taken off.
+std::vector<std::string> fields_of(const std::string& line) {
+  std::vector<std::string> fields(1);
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (quoted && line[i] == '"' && i + 1 < line.size() && line[i + 1] == '"')
+      fields.back() += line[i++];
+    else if (line[i] == '"')
+      quoted = !quoted;
+    else if (line[i] == ',' && !quoted)
+      fields.emplace_back();
+    else
+      fields.back() += line[i];
+  }
+  return fields;
+}
+
+/// Hands out the fields of a line, column by column.
+class LineReader {
+ public:
+  LineReader(const std::string& where, const std::string& line) : where_(where), fields_(fields_of(line)) {
+    constexpr std::size_t columns = 24;
+    if (fields_.size() != columns)
+      throw InputError(fmt::format("{}: has {} fields, not {}", where_, fields_.size(), columns));
+  }
+  LineReader& operator>>(std::string& text) {
+    text = fields_[next_++];
+    return *this;
+  }
+  template <class T>
+  LineReader& operator>>(std::optional<T>& number) {
+    const std::string& text = fields_[next_++];
+    if (text.empty()) return *this;
+    T value{};
+    const char* end = text.data() + text.size();
+    if (const auto [at, error] = std::from_chars(text.data(), end, value); error != std::errc() || at != end)
+      throw InputError(fmt::format("{}: '{}' is not a number", where_, text));
+    number = value;
+    return *this;
+  }
+
+ private:
+  std::string where_;
+  std::vector<std::string> fields_;
+  std::size_t next_ = 0;
+};
 
 }  // namespace
 
@@ -64,6 +114,25 @@ void write_results(const std::filesystem::path& file, const std::vector<Row>& ro
   std::string text = results_header() + '\n';
   for (const Row& row : rows) text += results_line(row) + '\n';
   write_file(file, text);
+}
+
+std::vector<Row> read_results(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::string line;
+  if (!in || !std::getline(in, line)) throw InputError(file.string() + ": cannot read results");
+  if (line != results_header())
+    throw InputError(fmt::format("{}:1: not the header of results: {}", file.string(), results_header()));
+  std::vector<Row> rows;
+  for (unsigned number = 2; std::getline(in, line); ++number) {
+    Row r;
+    LineReader(fmt::format("{}:{}", file.string(), number), line) >> r.scene >> r.formulation >>
+        r.operators >> r.material >> r.kernel >> r.support_dx >> r.dx >> r.particles >> r.pairs >>
+        r.threads >> r.precision >> r.integrator >> r.steps >> r.time >> r.quantity >> r.value >>
+        r.reference >> r.error >> r.unit >> r.status >> r.setup_s >> r.loop_s >> r.particle_steps_per_s >>
+        r.bytes_per_particle;
+    rows.push_back(std::move(r));
+  }
+  return rows;
 }
 
 std::string snake_number(double value) {

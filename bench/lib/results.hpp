@@ -34,6 +34,10 @@ double error_of(double value, double reference, bool absolute);
 /// Replaces the file in one go. \throws RunError
 void write_results(const std::filesystem::path& file, const std::vector<Row>& rows);
 
+/// What `write_results` wrote. \throws InputError "file:line: what" for a missing file, another header, or what is no
+/// number where one belongs.
+std::vector<Row> read_results(const std::filesystem::path& file);
+
 /// A swept value as part of a quantity's name: 1000 → "1000", -0.5 → "minus_0_5".
 std::string snake_number(double value);
 

@@ -25,6 +25,7 @@ Vec<D> start_displacement(const Vec<D>& X) {
 namespace {
 
 constexpr double cfl = 0.6;
+constexpr double forever = 1e30;  // [s]; steps are stopped by their number
 
 template <int D>
 std::shared_ptr<const Material<D>> step_material(bool updated) {
@@ -34,24 +35,23 @@ std::shared_ptr<const Material<D>> step_material(bool updated) {
 }  // namespace
 
 template <int D>
-EngineStep<D>::EngineStep(const Cloud<D>& cloud, Method method)
+EngineStep<D>::EngineStep(Cloud<D> cloud, const Method& method)
     : updated_(method.formulation.starts_with("ul_")),
-      simulation_(cloud, step_material<D>(updated_), method) {
+      dx_(cloud.dx),
+      simulation_(std::move(cloud), step_material<D>(updated_), method) {
   if (updated_) {
-    const Kernel kernel(method.kernel, D);
-    const double R = method.support_dx * cloud.dx, h = R / kernel.radius_factor();
-    dt_ = cfl * h / step_material<D>(true)->wave_speed();
+    const double R = method.support_dx * dx_, h = R / Kernel(method.kernel, D).radius_factor();
+    const double dt = cfl * h / step_material<D>(true)->wave_speed();
     // Half of the skin distance is used up between two rebuilds.
-    const double speed = method.skin * R / 2 / ((rebuild_every - 0.5) * dt_);
+    const double speed = method.skin * R / 2 / ((rebuild_every - 0.5) * dt);
     simulation_.set_velocity([speed](const Vec<D>& X) {
       Vec<D> v = start_displacement<D>(X) * (1e-3 * speed);
       v[0] += speed;
       return v;
     });
-    simulation_.prepare();
-    return;
+  } else {
+    simulation_.set_displacement(start_displacement<D>);
   }
-  simulation_.set_displacement(start_displacement<D>);
   // The first step of central differences leaves half a step's kick in the velocities of a body that was at
   // rest.
   const RunOptions one_step{.integrator = "central_difference",
@@ -59,10 +59,14 @@ EngineStep<D>::EngineStep(const Cloud<D>& cloud, Method method)
                             .max_step = 0,
                             .progress = [](std::int64_t, double, double) { return false; }};
   simulation_.prepare();
-  const RunResult result = simulation_.run(1e30, one_step);
-  dt_ = result.time;
-  for (std::size_t i = 0; i < simulation_.size(); ++i)
-    start_accelerations_.push_back(simulation_.velocity(i) * (2 / dt_));
+  dt_ = simulation_.run(forever, one_step).time;
+}
+
+template <int D>
+std::vector<Vec<D>> EngineStep<D>::start_accelerations() const {
+  std::vector<Vec<D>> a(simulation_.size());
+  for (std::size_t i = 0; i < a.size(); ++i) a[i] = simulation_.velocity(i) * (2 / dt_);
+  return a;
 }
 
 template <int D>
@@ -75,7 +79,7 @@ double EngineStep<D>::rate(int threads, double least_seconds) {
   std::int64_t counted = 0;
   const RunOptions options{.integrator = "leapfrog",
                            .cfl = cfl,
-                           .max_step = dt_,
+                           .max_step = 0,
                            .progress = [&](std::int64_t steps, double, double) {
                              const auto now = Clock::now();
                              if (steps == 1) {
@@ -86,7 +90,7 @@ double EngineStep<D>::rate(int threads, double least_seconds) {
                              seconds = std::chrono::duration<double>(now - start).count();
                              return seconds < least_seconds || (updated_ && counted % rebuild_every != 0);
                            }};
-  const RunResult result = simulation_.run(1e30, options);
+  const RunResult result = simulation_.run(forever, options);
   omp_set_num_threads(before);
   if (result.status != Status::ok)
     throw RunError(fmt::format("the {} body of {} particles broke while its steps were timed: {}",

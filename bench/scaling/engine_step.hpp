@@ -23,26 +23,28 @@ class EngineStep {
  public:
   static constexpr int rebuild_every = 10;
 
-  EngineStep(const Cloud<D>& cloud, Method method);
+  /// Sets the body up and makes the first step.
+  EngineStep(Cloud<D> cloud, const Method& method);
 
   /// Particle-steps a second with `threads` threads, after one step that is not counted.
   /// \throws RunError when the body breaks.
   double rate(int threads, double least_seconds);
-  /// Accelerations of the state that the body starts in, in the order of the cloud [m/s^2]. Total Lagrangian
-  /// only.
-  const std::vector<Vec<D>>& start_accelerations() const { return start_accelerations_; }
-  /// Step of the total Lagrangian body [s].
+  /// Accelerations of the state that the body started in, in the order of the cloud [m/s^2]; known until
+  /// `rate` is called. Total Lagrangian bodies only, which start at rest.
+  std::vector<Vec<D>> start_accelerations() const;
+  /// Length of the first step [s].
   double step() const { return dt_; }
 
   const Simulation<D>& simulation() const { return simulation_; }
   double bytes_per_particle() const;
   double neighbours() const;
+  double dx() const { return dx_; }
 
  private:
   bool updated_;
+  double dx_;
   Simulation<D> simulation_;
   double dt_ = 0;
-  std::vector<Vec<D>> start_accelerations_;
 };
 
 }  // namespace taut::bench

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <scaling/job.hpp>
 
 namespace taut::bench {
@@ -10,6 +11,22 @@ std::vector<int> Job::thread_counts() const {
   return counts;
 }
 
+std::int64_t Job::main_particles() const {
+  constexpr std::int64_t most = 1'000'000;
+  std::int64_t main = 0;
+  for (const std::int64_t n : particles)
+    if (n <= most) main = std::max(main, n);
+  return main > 0 ? main : *std::min_element(particles.begin(), particles.end());
+}
+
+std::optional<double> Job::limit(const std::string& quantity, int threads_used) const {
+  for (const Row& row : rows)
+    if (row.scene == "machine" && row.quantity == quantity && row.threads == threads_used) return row.value;
+  return {};
+}
+
+std::string thread_label(int threads) { return fmt::format("{} thread{}", threads, threads == 1 ? "" : "s"); }
+
 std::vector<Samples> Job::measure(const std::string& title, const std::vector<Contestant>& contestants,
                                   double scale, const std::string& unit) const {
   progress.begin(0, title);
@@ -21,7 +38,7 @@ std::vector<Samples> Job::measure(const std::string& title, const std::vector<Co
   });
   progress.say(fmt::format("{} [{}; median, min … max of {}]", title, unit, repeats));
   for (std::size_t c = 0; c < contestants.size(); ++c)
-    progress.say(fmt::format("  {:<44} {:>9.4g}  {:.4g} … {:.4g}", contestants[c].label,
+    progress.say(fmt::format("  {:<58} {:>9.4g}  {:.4g} … {:.4g}", contestants[c].label,
                              samples[c].median() * scale, samples[c].min() * scale,
                              samples[c].max() * scale));
   return samples;

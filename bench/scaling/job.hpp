@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
-#include <functional>
 #include <lib/progress.hpp>
 #include <lib/results.hpp>
+#include <optional>
 #include <scaling/body.hpp>
 #include <scaling/samples.hpp>
 #include <string>
@@ -27,6 +27,11 @@ struct Job {
 
   /// 1, 2, 4, … and all threads; all alone when quick.
   std::vector<int> thread_counts() const;
+  /// The size that everything but the growth of N is measured at: the largest up to 10^6, or the smallest.
+  std::int64_t main_particles() const;
+  /// Median of a limit of the machine, `triad` or another, with that many threads; empty where it was not
+  /// measured.
+  std::optional<double> limit(const std::string& quantity, int threads) const;
   /// Measures the contestants in turn and says their medians and spreads, times `scale`, in `unit`.
   std::vector<Samples> measure(const std::string& title, const std::vector<Contestant>& contestants,
                                double scale, const std::string& unit) const;
@@ -35,7 +40,10 @@ struct Job {
   void add(Row like, const std::string& quantity, double value, const std::string& unit) const;
 };
 
-/// Columns that describe a cube: "lattice_3d", …
+/// "1 thread", "2 threads".
+std::string thread_label(int threads);
+
+/// Column that describes a cube: "lattice_3d", …
 template <int D>
 std::string scene_name(Arrangement arrangement) {
   return fmt::format("{}_{}d", to_string(arrangement), D);

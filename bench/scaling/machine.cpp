@@ -9,13 +9,12 @@ void measure_machine(const Job& job) {
   std::vector<std::pair<const char*, int>> what;
   for (const int t : job.thread_counts()) {
     bandwidths.push_back(
-        {fmt::format("triad, {} threads", t), [&, t] { return stream.triad(t, job.least_seconds); }});
+        {"triad, " + thread_label(t), [&, t] { return stream.triad(t, job.least_seconds); }});
     what.emplace_back("triad", t);
-    bandwidths.push_back(
-        {fmt::format("copy, {} threads", t), [&, t] { return stream.copy(t, job.least_seconds); }});
+    bandwidths.push_back({"copy, " + thread_label(t), [&, t] { return stream.copy(t, job.least_seconds); }});
     what.emplace_back("copy", t);
-    peaks.push_back({fmt::format("multiply-adds, {} threads", t),
-                     [&, t] { return multiply_add_peak(t, job.least_seconds); }});
+    peaks.push_back(
+        {"multiply-adds, " + thread_label(t), [&, t] { return multiply_add_peak(t, job.least_seconds); }});
   }
   const auto row = [](int threads) {
     Row r;

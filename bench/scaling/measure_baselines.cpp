@@ -1,122 +1,109 @@
 #include <cmath>
+#include <deque>
 #include <scaling/baseline.hpp>
-#include <scaling/engine_step.hpp>
-#include <scaling/job.hpp>
+#include <scaling/step_case.hpp>
 #include <taut/core/error.hpp>
 
 namespace taut::bench {
 namespace {
 
 /// Largest difference over the largest acceleration.
-double difference(const std::vector<Vec<3>>& ours, const std::vector<Vec<3>>& theirs) {
+double difference(const std::vector<Vec<3>>& a, const std::vector<Vec<3>>& b) {
   double largest = 0, error = 0;
-  for (std::size_t i = 0; i < ours.size(); ++i) {
-    largest = std::max(largest, ours[i].norm());
-    error = std::max(error, (ours[i] - theirs[i]).norm());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    largest = std::max(largest, a[i].norm());
+    error = std::max(error, (a[i] - b[i]).norm());
   }
   return error / largest;
 }
 
-struct Entry {
-  std::string name, formulation, precision;
-  int threads;
-  double bytes_per_particle;
+struct Rival {
+  std::string name;
+  std::unique_ptr<Baseline> baseline;
 };
 
-void compare_with_baselines(const Job& job, int neighbours, Arrangement arrangement, std::int64_t wanted) {
-  const Cloud<3> cloud = cube<3>(wanted, arrangement);
-  Method method;
-  method.support_dx = neighbourhood<3>(neighbours, arrangement).support_dx;
+void compare_with_baselines(const Job& job, int neighbours, Arrangement arrangement) {
+  const std::vector<int> counts = job.thread_counts();
   std::vector<PairPrecision> precisions = {PairPrecision::double_precision, PairPrecision::single_precision};
   if (arrangement == Arrangement::lattice) precisions.push_back(PairPrecision::shared);
-  std::vector<EngineStep<3>> engines;
-  engines.reserve(precisions.size());
-  for (const PairPrecision precision : precisions) {
-    method.pair_precision = precision;
-    engines.emplace_back(cloud, method);
-  }
-  const auto material =
-      std::dynamic_pointer_cast<const Hyperelastic<3>>(make_material<3>("neo_hookean", step_parameters()));
-  const BaselineBody body{cloud, method, material};
-  std::vector<std::unique_ptr<Baseline>> baselines;
-  const std::vector<std::string> names = {"csr", "eigen"};
-  baselines.push_back(make_csr_gather(body));
-  baselines.push_back(make_eigen_sparse(body));
+  const Cloud<3> cloud = cube<3>(job.main_particles(), arrangement);
+  const auto n = static_cast<double>(cloud.size());
+  std::deque<StepCase<3>> cases;
+  for (const PairPrecision precision : precisions)
+    cases.emplace_back(job, job.main_particles(),
+                       StepSpec{arrangement, neighbours, "tl_displacement", precision, counts});
 
-  Row like;
-  like.scene = scene_name<3>(arrangement);
-  like.operators = "corrected";
-  like.material = "neo_hookean";
-  like.kernel = method.kernel;
-  like.support_dx = method.support_dx;
-  like.dx = cloud.dx;
-  like.particles = static_cast<std::int64_t>(cloud.size());
-  like.pairs = engines[0].simulation().pairs();
-  like.integrator = "leapfrog";
+  const BaselineBody body{
+      cloud, cases[0].method(),
+      std::dynamic_pointer_cast<const Hyperelastic<3>>(make_material<3>("neo_hookean", step_parameters()))};
+  std::vector<Rival> rivals;
+  rivals.push_back({"csr", make_csr_gather(body)});
+  rivals.push_back({"eigen", make_eigen_sparse(body)});
 
-  // Another answer would make the ratio mean nothing.
-  constexpr double tolerance = 1e-9;
-  for (std::size_t b = 0; b < baselines.size(); ++b) {
-    const double error = difference(engines[0].start_accelerations(), baselines[b]->accelerations());
+  // Another answer would make a ratio mean nothing.
+  const std::vector<Vec<3>> expected = cases[0].engine().start_accelerations();
+  const auto check = [&](Row row, const std::vector<Vec<3>>& a, double tolerance) {
+    const double error = difference(expected, a);
     if (!(error < tolerance))
-      throw RunError(
-          fmt::format("the {} baseline differs from taut by {:g} in its accelerations", names[b], error));
-    Row row = like;
-    row.formulation = "baseline_" + names[b];
-    job.add(row, "acceleration_difference", error, "1");
-  }
+      throw RunError(fmt::format(
+          "{} of {} pair vectors differs from taut in double precision by {:g} in its accelerations",
+          row.formulation, row.precision, error));
+    job.add(std::move(row), "acceleration_difference", error, "1");
+  };
+  constexpr double round_off = 1e-10, single_round_off = 1e-5;
+  for (std::size_t c = 1; c < cases.size(); ++c)
+    check(cases[c].row(), cases[c].engine().start_accelerations(),
+          precisions[c] == PairPrecision::single_precision ? single_round_off : round_off);
+  const auto rival_row = [&](const Rival& rival) {
+    Row row = cases[0].row();
+    row.formulation = "baseline_" + rival.name;
+    row.setup_s.reset();
+    row.bytes_per_particle = static_cast<double>(rival.baseline->bytes()) / n;
+    return row;
+  };
+  for (const Rival& rival : rivals) check(rival_row(rival), rival.baseline->accelerations(), round_off);
 
   std::vector<Contestant> contestants;
-  std::vector<Entry> entries;
-  const auto n = static_cast<double>(cloud.size());
-  const double dt = engines[0].step();
-  for (const int t : job.thread_counts()) {
-    for (std::size_t e = 0; e < engines.size(); ++e) {
-      entries.push_back(
-          {"taut", "tl_displacement", to_string(precisions[e]), t, engines[e].bytes_per_particle()});
-      contestants.push_back({fmt::format("taut, {}, {} threads", to_string(precisions[e]), t),
-                             [&, e, t] { return engines[e].rate(t, job.least_seconds); }});
-    }
-    for (std::size_t b = 0; b < baselines.size(); ++b) {
-      entries.push_back(
-          {names[b], "baseline_" + names[b], "double", t, static_cast<double>(baselines[b]->bytes()) / n});
-      contestants.push_back({fmt::format("{}, {} threads", names[b], t), [&, b, t, n] {
-                               const auto step = [&] { baselines[b]->step(dt, t); };
+  const double dt = cases[0].engine().step();
+  for (const int t : counts) {
+    for (StepCase<3>& c : cases) contestants.push_back(c.contestant(job, t));
+    for (const Rival& rival : rivals)
+      contestants.push_back({fmt::format("{}, {}", rival.name, thread_label(t)), [&, t] {
+                               const auto step = [&] { rival.baseline->step(dt, t); };
                                step();
                                return n / seconds_per_call(step, job.least_seconds);
                              }});
-    }
   }
-  const auto measured =
-      job.measure(fmt::format("TL step against baselines, {} particles, {} of {} neighbours", cloud.size(),
-                              to_string(arrangement), neighbours),
-                  contestants, 1e-6, "M particle-steps/s");
-  for (std::size_t k = 0; k < entries.size(); ++k) {
-    const Entry& entry = entries[k];
-    Row row = like;
-    row.formulation = entry.formulation;
-    row.precision = entry.precision;
-    row.threads = entry.threads;
-    row.bytes_per_particle = entry.bytes_per_particle;
-    row.particle_steps_per_s = measured[k].median();
-    job.add(row, "rate", measured[k], "particle-steps/s");
-    if (entry.name != "taut") continue;
-    for (std::size_t other = 0; other < entries.size(); ++other)
-      if (entries[other].name != "taut" && entries[other].threads == entry.threads)
-        job.add(row, "ratio_to_" + entries[other].name, measured[k].median() / measured[other].median(), "1");
+  const auto measured = job.measure(fmt::format("TL step against baselines, {} particles, {}, {} neighbours",
+                                                cloud.size(), to_string(arrangement), neighbours),
+                                    contestants, 1e-6, "M particle-steps/s");
+  const std::size_t all = cases.size() + rivals.size();
+  for (std::size_t k = 0; k < counts.size(); ++k) {
+    for (std::size_t r = 0; r < rivals.size(); ++r) {
+      const Samples& rate = measured[k * all + cases.size() + r];
+      Row row = rival_row(rivals[r]);
+      row.threads = counts[k];
+      row.particle_steps_per_s = rate.median();
+      job.add(row, "rate", rate, "particle-steps/s");
+    }
+    for (std::size_t c = 0; c < cases.size(); ++c) {
+      const Samples& rate = measured[k * all + c];
+      cases[c].add_rate(job, counts[k], rate);
+      Row row = cases[c].row();
+      row.threads = counts[k];
+      row.particle_steps_per_s = rate.median();
+      for (std::size_t r = 0; r < rivals.size(); ++r)
+        job.add(row, "ratio_to_" + rivals[r].name,
+                rate.median() / measured[k * all + cases.size() + r].median(), "1");
+    }
   }
 }
 
 }  // namespace
 
 void measure_baselines(const Job& job) {
-  std::int64_t particles = 0;
-  for (const std::int64_t n : job.particles)
-    if (n <= 1'000'000) particles = std::max(particles, n);
-  if (particles == 0) particles = 1'000'000;
-  for (const int neighbours : job.neighbours)
-    compare_with_baselines(job, neighbours, Arrangement::lattice, particles);
-  if (!job.quick) compare_with_baselines(job, job.neighbours.front(), Arrangement::jittered, particles);
+  for (const int neighbours : job.neighbours) compare_with_baselines(job, neighbours, Arrangement::lattice);
+  if (!job.quick) compare_with_baselines(job, job.neighbours.front(), Arrangement::jittered);
 }
 
 }  // namespace taut::bench

@@ -33,12 +33,12 @@ void compare_lists(const Job& job, const std::string& kind, std::int64_t points)
   std::vector<Contestant> contestants;
   for (const int t : counts) {
     contestants.push_back(
-        {fmt::format("taut, {} threads", t), [&, t] {
+        {"taut, " + thread_label(t), [&, t] {
            double seconds = 0;
            with_threads(t, [&] { seconds = seconds_per_call([&] { taut_list(cloud); }, job.least_seconds); });
            return seconds;
          }});
-    contestants.push_back({fmt::format("nanoflann radiusSearch, {} threads", t), [&, t] {
+    contestants.push_back({"nanoflann radiusSearch, " + thread_label(t), [&, t] {
                              return seconds_per_call([&] { nanoflann_lists(cloud, t); }, job.least_seconds);
                            }});
   }
@@ -65,11 +65,7 @@ void compare_lists(const Job& job, const std::string& kind, std::int64_t points)
 }  // namespace
 
 void measure_lists(const Job& job) {
-  std::int64_t points = 1'000'000;
-  for (const std::int64_t n : job.particles)
-    points = std::min<std::int64_t>(
-        points, std::max<std::int64_t>(n, *std::max_element(job.particles.begin(), job.particles.end())));
-  for (const std::string& kind : list_clouds()) compare_lists(job, kind, points);
+  for (const std::string& kind : list_clouds()) compare_lists(job, kind, job.main_particles());
 }
 
 }  // namespace taut::bench

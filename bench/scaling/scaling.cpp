@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <lib/files.hpp>
+#include <lib/gnuplot.hpp>
 #include <scaling/job.hpp>
+#include <scaling/page.hpp>
 #include <scaling/scaling.hpp>
 #include <taut/core/error.hpp>
 #include <utility>
@@ -33,6 +35,9 @@ void run_scaling(const CommonOptions& common, const ScalingOptions& options) {
     if (std::find(scaling_parts().begin(), scaling_parts().end(), name) == scaling_parts().end())
       throw InputError(
           fmt::format("--parts: unknown part \"{}\"; valid: {}", name, join_names(scaling_parts())));
+  if (!options.page.empty())
+    return write_performance_page(options.page,
+                                  options.from.empty() ? common.out / "results.csv" : options.from);
   ProgressLine progress(common.quiet, 1);
   std::vector<Row> rows;
   Job job{.particles = options.particles,
@@ -51,6 +56,9 @@ void run_scaling(const CommonOptions& common, const ScalingOptions& options) {
   if (job.neighbours.empty())
     job.neighbours = common.quick ? std::vector<int>{18} : std::vector<int>{18, 32, 56, 80};
   for (const int neighbours : job.neighbours) neighbourhood<3>(neighbours, Arrangement::lattice);
+  make_folder(common.out);
+  const std::string machine = machine_description();
+  write_file(common.out / "machine.txt", machine + '\n');
   for (const auto& [name, measure] : parts()) {
     if (!options.parts.empty() &&
         std::find(options.parts.begin(), options.parts.end(), name) == options.parts.end())
@@ -58,6 +66,12 @@ void run_scaling(const CommonOptions& common, const ScalingOptions& options) {
     measure(job);
     write_results(common.out / "results.csv", rows);
   }
+  const std::vector<std::string> missing = write_scaling_report(rows, machine, common.quick, common.out);
+  if (!gnuplot_available())
+    progress.say("gnuplot was not found: charts are left as tables (charts/*.csv).");
+  else
+    for (const std::string& what : missing) fmt::print(stderr, "taut-scaling: cannot draw {}\n", what);
+  progress.say("Look at " + (common.out / "report.html").string());
 }
 
 }  // namespace taut::bench

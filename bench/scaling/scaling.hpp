@@ -16,6 +16,8 @@ struct ScalingOptions {
   std::vector<int> neighbours;          ///< empty: 18, 32, 56, 80
   bool large = false;                   ///< 10^7 particles as well
   int repeats = 0;                      ///< 0: 7, or 3 when quick
+  std::filesystem::path page;           ///< instead of measuring, write this page …
+  std::filesystem::path from;           ///< … from this results.csv; empty: the one in the output folder
 };
 
 /// "stream", "steps", …, in the order in which they run.

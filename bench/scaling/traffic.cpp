@@ -1,0 +1,107 @@
+#include <scaling/engine_step.hpp>
+#include <scaling/traffic.hpp>
+#include <taut/core/kernel.hpp>
+#include <taut/core/operators.hpp>
+#include <taut/internal/assembly.hpp>
+#include <taut/neighbors/search.hpp>
+
+namespace taut::bench {
+namespace {
+
+constexpr double value = sizeof(double);
+
+// Positions, velocities and accelerations in leapfrog: kick and drift read x, v, a and write x, v; the second
+// kick reads v, a and writes v.
+template <int D>
+constexpr double integrator_bytes = (5 + 3) * D* value;
+template <int D>
+constexpr double integrator_flops = (4 + 2) * D;
+
+template <int D>
+Particles<D> particles_of(const Cloud<D>& cloud, const char* material, double reach) {
+  return assemble<D>(cloud, {make_material<D>(material, step_parameters())},
+                     std::vector<std::uint8_t>(cloud.size(), 0), {}, reach);
+}
+
+template <int D>
+PairList pairs_of(const Particles<D>& p, double radius) {
+  PointView<D> view;
+  for (int d = 0; d < D; ++d) view.x[static_cast<std::size_t>(d)] = p.X.component(d);
+  view.n = p.total;
+  return find_pairs<D>(view, radius);
+}
+
+}  // namespace
+
+template <int D>
+Traffic total_lagrangian_traffic(const Cloud<D>& cloud, const Method& method) {
+  const double support = method.support_dx * cloud.dx;
+  const Kernel kernel(method.kernel, D);
+  const Particles<D> p = particles_of<D>(cloud, "neo_hookean", support);
+  const PairList pairs = pairs_of(p, support);
+  const PairOperator<D> op = make_operator<D>(method, p, pairs, kernel, support / kernel.radius_factor());
+  const auto n = static_cast<double>(cloud.size());
+  const bool recomputed = op.precision == PairPrecision::recomputed;
+  const bool weights = recomputed || op.precision == PairPrecision::shared;
+
+  // Masks of slots are for recomputed vectors only; shared vectors and matrices stay in the cache, their
+  // codes do not.
+  const auto list =
+      static_cast<double>(pairs.bytes()) - (recomputed ? 0 : static_cast<double>(pairs.slots()));
+  const auto payload = static_cast<double>(op.vectors_f.bytes() + op.vectors_d.bytes() + op.code.bytes());
+  const auto adjoint = op.adjoint_f.empty() && op.adjoint_d.empty()
+                           ? payload
+                           : static_cast<double>(op.adjoint_f.bytes() + op.adjoint_d.bytes());
+  const auto matrices = static_cast<double>(op.M.bytes() + op.slice_code.bytes() + op.F0.bytes());
+  const auto sums = static_cast<double>(op.sum.bytes() + op.slice_code.bytes());
+  const double per_particle = (weights ? value : 0) + (recomputed ? D * value : 0);  // w, X: in both passes
+
+  const double gradient_pass =
+      (list + payload + matrices) / n + per_particle + (D + 1 + D * D) * value;                    // x, V; Q
+  const double force_pass = (list + adjoint + sums) / n + per_particle + (D * D + 1 + D) * value;  // Q, m; a
+  const double pair_flops =
+      (D + 2 * D * D) + 2 * D * D + (weights ? D : 0) +
+      (recomputed ? 2 * (D + 2 * D + D + 10) : 0);           // r, r^2, scaling, table: in both passes
+  const double particle_flops = 2 * D * D * D * 2 +          // sum M^T, P M
+                                D * D + 2 * D * D + 2 * D +  // V, Q s, 1 / m
+                                (D == 3   ? 85
+                                 : D == 2 ? 30
+                                          : 8) +  // stress: inverse, J, ln J, P
+                                (D == 3   ? 30
+                                 : D == 2 ? 12
+                                          : 2);  // bounds of the stretches
+  return {gradient_pass + force_pass + integrator_bytes<D>,
+          pair_flops * static_cast<double>(pairs.pairs()) / n + particle_flops + integrator_flops<D>};
+}
+
+template <int D>
+Traffic updated_lagrangian_traffic(const Cloud<D>& cloud, const Method& method, int rebuild_every) {
+  const double support = method.support_dx * cloud.dx;
+  const Particles<D> p = particles_of<D>(cloud, "hypoelastic", support);
+  const PairList pairs = pairs_of(p, support * (1 + method.skin));
+  const auto n = static_cast<double>(cloud.size());
+  const double list = static_cast<double>(pairs.bytes() - static_cast<std::size_t>(pairs.slots())) / n;
+  constexpr int S = sym_components<D>;
+  const double skin_check = 2 * D * value;  // x, place of the last build
+  const double rates =
+      list + (2 * D + 1 + 1 + S + 1) * value + (S + 1 + 1) * value;         // x, v, m, rho, s, rho; rates
+  const double evolved = 3 * (S + 2) * value;                               // value, rate; value
+  const double stress = (S + 2) * value + S * value;                        // s, rho, rho; T
+  const double accelerations = list + (2 * D + S + 2) * value + D * value;  // x, v, T, m, rho; a
+  const double rebuild = (static_cast<double>(pairs.bytes()) / n + 2 * D * value) / rebuild_every;
+  constexpr double geometry = 3 * D + 10 + 1;  // differences, r^2, kernel table, mass
+  const double pair_flops = 2 * geometry + (D + D + 2 * D * D) + (S + D + 2 * D * D);
+  const double particle_flops = 2 * D * D + (D == 3 ? 90 : D == 2 ? 45 : 15) + 3 * S + 8;
+  return {skin_check + rates + evolved + stress + accelerations + rebuild + integrator_bytes<D>,
+          pair_flops * static_cast<double>(pairs.pairs()) / n + particle_flops + integrator_flops<D>};
+}
+
+#define TAUT_INSTANTIATE(D)                                                     \
+  template Traffic total_lagrangian_traffic<D>(const Cloud<D>&, const Method&); \
+  template Traffic updated_lagrangian_traffic<D>(const Cloud<D>&, const Method&, int);
+TAUT_INSTANTIATE(1)
+TAUT_INSTANTIATE(2)
+TAUT_INSTANTIATE(3)
+#undef TAUT_INSTANTIATE
+
+}  // namespace taut::bench
