@@ -48,7 +48,8 @@ std::string style_of(const Series& s) {
   const auto mark = static_cast<std::size_t>(s.colour) % filled.size();
   switch (s.style) {
     case Series::Style::truth:
-      return fmt::format("with {} lc rgb '#111111' lw 2 pt 1 ps 0.9", s.marks ? "linespoints" : "lines");
+      return s.marks ? "with linespoints lc rgb '#111111' lw 2 pt 1 ps 0.9"
+                     : "with lines lc rgb '#111111' lw 2";
     case Series::Style::guide:
       return "with lines lc rgb '#999999' lw 1 dt 2";
     case Series::Style::printed:
@@ -157,6 +158,9 @@ std::string script_of(const Chart& chart) {
     const std::string name = fmt::format("$d{}", block++);
     out += name + " << EOD\n" + (data.empty() ? "NaN NaN\n" : data) + "EOD\n";
     add(fmt::format("{} using 1:2 {} {}", name, style_of(s), title));
+    if (s.style == Series::Style::bar)
+      add(fmt::format("{} using 1:2:(sprintf('%.3g', $2)) with labels offset 0,0.6 font ',12' notitle",
+                      name));
     if (s.broke_x.empty()) continue;
     const double at = 0.03 + 0.05 * row++;
     const double level = chart.log_y ? y.min * std::pow(y.max / y.min, at) : y.min + at * (y.max - y.min);
@@ -179,8 +183,8 @@ bool Chart::empty() const {
 }
 
 std::string run_colour(int index) {
-  static constexpr std::array<const char*, 7> colours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
-                                                         "#E69F00", "#56B4E9", "#8C564B"};
+  static constexpr std::array<const char*, 8> colours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
+                                                         "#E69F00", "#56B4E9", "#8C564B", "#7F7F7F"};
   return colours[static_cast<std::size_t>(index) % colours.size()];
 }
 

@@ -14,7 +14,7 @@ struct Series {
     run,      ///< coloured line with filled marks
     printed,  ///< hollow marks of the run's colour, no line
     guide,    ///< thin grey dashed line
-    bar       ///< bars at the places of `Chart::x_names`, beside those of other series
+    bar       ///< bars at the places of `Chart::x_names`, beside those of other series, with their values
   };
   std::string label;
   Style style = Style::run;

@@ -15,6 +15,7 @@ const std::vector<Part>& parts() {
   static const std::vector<Part> all = {{"stream", measure_machine},
                                         {"steps", measure_steps},
                                         {"baselines", measure_baselines},
+                                        {"dense", measure_dense},
                                         {"lists", measure_lists}};
   return all;
 }

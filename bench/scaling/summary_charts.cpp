@@ -10,21 +10,39 @@ namespace {
 
 constexpr double million = 1e-6;
 
+/// The same colour in every chart.
+int colour_of(const Row& row) {
+  if (row.formulation == "baseline_csr") return 6;
+  if (row.formulation == "baseline_eigen") return 7;
+  if (row.formulation.starts_with("ul_")) return 5;
+  if (row.scene.starts_with("jittered")) return 4;
+  return row.precision == "shared" ? 0 : row.precision == "single" ? 1 : row.precision == "double" ? 2 : 3;
+}
+
+/// Jittered clouds stand in charts with the payload that suits them.
+bool charted(const Row& row) {
+  return is_step(row) && (row.formulation.starts_with("ul_") || row.scene.starts_with("lattice") ||
+                          row.precision == "single");
+}
+
 /// Which points of which rows a line joins: those with the same label, in the order of x.
-template <class Label, class X, class Y>
-std::vector<Series> lines(const std::vector<Row>& rows, Label&& label, X&& x, Y&& y) {
+template <class Label, class X, class Y, class Colour = int (*)(const Row&)>
+std::vector<Series> lines(const std::vector<Row>& rows, Label&& label, X&& x, Y&& y,
+                          Colour&& colour = colour_of) {
   std::vector<Series> series;
   std::map<std::string, std::map<double, double>> points;
   std::vector<std::string> order;
+  std::map<std::string, int> colours;
   for (const Row& row : rows) {
     const std::string name = label(row);
     if (!points.contains(name)) order.push_back(name);
+    colours.try_emplace(name, colour(row));
     points[name].try_emplace(x(row), y(row));
   }
   for (const std::string& name : order) {
     Series s;
     s.label = name;
-    s.colour = static_cast<int>(series.size());
+    s.colour = colours[name];
     for (const auto& [at, value] : points[name]) {
       s.x.push_back(at);
       s.y.push_back(value);
@@ -67,7 +85,8 @@ Chart rate_against_threads(const std::vector<Row>& rows) {
   const auto chosen = cases_of(rows, "rate", [&](const Row& r) {
     return dimension_of(r) == 3 && r.particles == size && neighbours_of(r) == fewest &&
            r.operators != "standard" &&
-           (!is_step(r) || value_of(rows, r, "ratio_to_one_thread") || r.threads == 1);
+           (!is_step(r) || (charted(r) && r.precision != "double" && r.precision != "recomputed") ||
+            r.formulation.starts_with("ul_"));
   });
   Chart chart{"rate_threads", fmt::format("Steps of {} particles, {} neighbours, 3D", size, fewest), "",
               "threads", "million particle-steps/s"};
@@ -101,7 +120,7 @@ Chart rate_against_neighbours(const std::vector<Row>& rows) {
 Chart fraction_of_limit(const std::vector<Row>& rows) {
   const std::int64_t threads = most_threads(rows), size = main_size(rows);
   const auto chosen = cases_of(rows, "fraction_of_limit", [&](const Row& r) {
-    return dimension_of(r) == 3 && r.particles == size && r.threads == threads;
+    return charted(r) && dimension_of(r) == 3 && r.particles == size && r.threads == threads;
   });
   Chart chart{
       "fraction_of_limit",
@@ -127,7 +146,8 @@ Chart dense_chart(const std::vector<Row>& rows) {
         return fmt::format("{}, {}D", r.formulation == "baseline_dense" ? "dense matrices" : "taut",
                            dimension_of(r));
       },
-      particles_of, rate_of);
+      particles_of, rate_of,
+      [](const Row& r) { return (r.formulation == "baseline_dense") + 2 * (dimension_of(r) - 2); });
   return chart;
 }
 
@@ -136,8 +156,7 @@ Chart lists_chart(const std::vector<Row>& rows) {
   const auto chosen = cases_of(rows, "list_seconds", [&](const Row& r) { return r.threads == threads; });
   if (chosen.empty()) return {};
   Chart chart{"lists", fmt::format("Lists of {} points, {} threads", *chosen.front().particles, threads),
-              "Lower is better; on a logarithmic scale.", "", "milliseconds"};
-  chart.log_y = true;
+              "Lower is better.", "", "milliseconds"};
   std::vector<std::string> scenes;
   for (const Row& row : chosen)
     if (std::find(scenes.begin(), scenes.end(), row.scene) == scenes.end()) scenes.push_back(row.scene);
@@ -184,7 +203,7 @@ Chart roofline(const std::vector<Row>& rows) {
     return *value_of(rows, r, "flops_per_step") / *value_of(rows, r, "bytes_per_step");
   };
   const auto chosen = cases_of(rows, "rate", [&](const Row& r) {
-    return is_step(r) && dimension_of(r) == 3 && r.particles == size && r.threads == threads &&
+    return charted(r) && dimension_of(r) == 3 && r.particles == size && r.threads == threads &&
            value_of(rows, r, "bytes_per_step");
   });
   if (chosen.empty()) return {};
