@@ -12,11 +12,12 @@
 namespace taut::bench {
 
 /// A free body under the `corrected` operator (see PairOperator) with pair vectors in double precision, in
-/// leapfrog steps: the same sums as taut's `tl_displacement`, in other data structures.
+/// leapfrog steps whose velocities live at half steps: the same sums as taut's `tl_displacement`, in other
+/// data structures.
 class Baseline {
  public:
   virtual ~Baseline() = default;
-  /// One step of dt [s]; expects accelerations of the present state and leaves those of the next.
+  /// One step of dt [s]: kick, drift and the accelerations of the new state.
   virtual void step(double dt, int threads) = 0;
   /// Accelerations of the present state [m/s^2], in the order of the cloud.
   virtual std::vector<Vec<3>> accelerations() const = 0;

@@ -36,12 +36,10 @@ class CsrGather final : public Baseline {
     const std::size_t n = x_.size();
 #pragma omp parallel for schedule(static) num_threads(threads)
     for (std::size_t i = 0; i < n; ++i) {
-      v_[i] += dt / 2 * a_[i];
+      v_[i] += dt * a_[i];
       x_[i] += dt * v_[i];
     }
     update_accelerations(threads);
-#pragma omp parallel for schedule(static) num_threads(threads)
-    for (std::size_t i = 0; i < n; ++i) v_[i] += dt / 2 * a_[i];
   }
 
   std::vector<Vec<3>> accelerations() const override {

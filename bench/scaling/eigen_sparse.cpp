@@ -52,12 +52,10 @@ class EigenSparse final : public Baseline {
     const Eigen::Index n = x_.rows();
 #pragma omp parallel for schedule(static) num_threads(threads)
     for (Eigen::Index i = 0; i < n; ++i) {
-      v_.row(i) += dt / 2 * a_.row(i);
+      v_.row(i) += dt * a_.row(i);
       x_.row(i) += dt * v_.row(i);
     }
     update_accelerations();
-#pragma omp parallel for schedule(static) num_threads(threads)
-    for (Eigen::Index i = 0; i < n; ++i) v_.row(i) += dt / 2 * a_.row(i);
     Eigen::setNbThreads(before);
   }
 

@@ -92,6 +92,7 @@ double EngineStep<D>::rate(int threads, double least_seconds) {
                            }};
   const RunResult result = simulation_.run(forever, options);
   omp_set_num_threads(before);
+  rebuilds_ = result.rebuilds;
   if (result.status != Status::ok)
     throw RunError(fmt::format("the {} body of {} particles broke while its steps were timed: {}",
                                simulation_.method().formulation, simulation_.size(), result.breakdown->what));

@@ -38,6 +38,8 @@ class EngineStep {
   const Simulation<D>& simulation() const { return simulation_; }
   double bytes_per_particle() const;
   double neighbours() const;
+  /// Of the pair list, since set-up.
+  std::int64_t rebuilds() const { return rebuilds_; }
   double dx() const { return dx_; }
 
  private:
@@ -45,6 +47,7 @@ class EngineStep {
   double dx_;
   Simulation<D> simulation_;
   double dt_ = 0;
+  std::int64_t rebuilds_ = 0;
 };
 
 }  // namespace taut::bench

@@ -10,12 +10,11 @@ namespace {
 
 constexpr double value = sizeof(double);
 
-// Positions, velocities and accelerations in leapfrog: kick and drift read x, v, a and write x, v; the second
-// kick reads v, a and writes v.
+// The kick of a whole step and the drift: x, v and a are read, x and v written.
 template <int D>
-constexpr double integrator_bytes = (5 + 3) * D* value;
+constexpr double integrator_bytes = 5 * D* value;
 template <int D>
-constexpr double integrator_flops = (4 + 2) * D;
+constexpr double integrator_flops = 4 * D;
 
 template <int D>
 Particles<D> particles_of(const Cloud<D>& cloud, const char* material, double reach) {
@@ -42,7 +41,6 @@ Traffic total_lagrangian_traffic(const Cloud<D>& cloud, const Method& method) {
   const PairOperator<D> op = make_operator<D>(method, p, pairs, kernel, support / kernel.radius_factor());
   const auto n = static_cast<double>(cloud.size());
   const bool recomputed = op.precision == PairPrecision::recomputed;
-  const bool weights = recomputed || op.precision == PairPrecision::shared;
 
   // Masks of slots are for recomputed vectors only; shared vectors and matrices stay in the cache, their
   // codes do not.
@@ -54,22 +52,19 @@ Traffic total_lagrangian_traffic(const Cloud<D>& cloud, const Method& method) {
                            : static_cast<double>(op.adjoint_f.bytes() + op.adjoint_d.bytes());
   const auto matrices = static_cast<double>(op.M.bytes() + op.slice_code.bytes() + op.F0.bytes());
   const auto sums = static_cast<double>(op.sum.bytes() + op.slice_code.bytes());
-  const double per_particle = (weights ? value : 0) + (recomputed ? D * value : 0);  // w, X: in both passes
+  const double per_particle =  // weights and X, in both passes
+      recomputed ? static_cast<double>(op.weight.bytes()) / n + D * value : 0;
 
   const double gradient_pass =
       (list + payload + matrices) / n + per_particle + (D + 1 + D * D) * value;                    // x, V; Q
   const double force_pass = (list + adjoint + sums) / n + per_particle + (D * D + 1 + D) * value;  // Q, m; a
-  const double pair_flops =
-      (D + 2 * D * D) + 2 * D * D + (weights ? D : 0) +
-      (recomputed ? 2 * (D + 2 * D + D + 10) : 0);           // r, r^2, scaling, table: in both passes
-  const double particle_flops = 2 * D * D * D * 2 +          // sum M^T, P M
-                                D * D + 2 * D * D + 2 * D +  // V, Q s, 1 / m
-                                (D == 3   ? 85
-                                 : D == 2 ? 30
-                                          : 8) +  // stress: inverse, J, ln J, P
-                                (D == 3   ? 30
-                                 : D == 2 ? 12
-                                          : 2);  // bounds of the stretches
+  // Recomputed, in both passes: differences, r^2, the kernel's table, scaling.
+  constexpr double geometry = 5 * D + 10;
+  const double pair_flops = (D + 2 * D * D) + 2 * D * D + (recomputed ? 2 * geometry : 0);
+  constexpr double stress[] = {8, 30, 85};  // inverse, J, ln J and P in 1D, 2D, 3D
+  constexpr double bounds[] = {2, 12, 30};  // of the stretches
+  const double particle_flops = 4 * D * D * D + D * D + 2 * D * D + 2 * D + stress[D - 1] +
+                                bounds[D - 1];  // sum M^T, P M; V, Q s, 1 / m
   return {gradient_pass + force_pass + integrator_bytes<D>,
           pair_flops * static_cast<double>(pairs.pairs()) / n + particle_flops + integrator_flops<D>};
 }
@@ -91,7 +86,8 @@ Traffic updated_lagrangian_traffic(const Cloud<D>& cloud, const Method& method, 
   const double rebuild = (static_cast<double>(pairs.bytes()) / n + 2 * D * value) / rebuild_every;
   constexpr double geometry = 3 * D + 10 + 1;  // differences, r^2, kernel table, mass
   const double pair_flops = 2 * geometry + (D + D + 2 * D * D) + (S + D + 2 * D * D);
-  const double particle_flops = 2 * D * D + (D == 3 ? 90 : D == 2 ? 45 : 15) + 3 * S + 8;
+  constexpr double law[] = {15, 45, 90};  // rates and stress of the material in 1D, 2D, 3D
+  const double particle_flops = 2 * D * D + law[D - 1] + 3 * S + 8;
   return {skin_check + rates + evolved + stress + accelerations + rebuild + integrator_bytes<D>,
           pair_flops * static_cast<double>(pairs.pairs()) / n + particle_flops + integrator_flops<D>};
 }
