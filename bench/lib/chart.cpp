@@ -159,7 +159,9 @@ std::string script_of(const Chart& chart) {
     out += name + " << EOD\n" + (data.empty() ? "NaN NaN\n" : data) + "EOD\n";
     add(fmt::format("{} using 1:2 {} {}", name, style_of(s), title));
     if (s.style == Series::Style::bar)
-      add(fmt::format("{} using 1:2:(sprintf('%.3g', $2)) with labels offset 0,0.6 font ',12' notitle",
+      add(
+          fmt::format("{} using 1:2:(sprintf($2 < 100 ? '%.3g' : '%.0f', $2)) with labels offset 0,0.6 font "
+                      "',12' notitle",
                       name));
     if (s.broke_x.empty()) continue;
     const double at = 0.03 + 0.05 * row++;

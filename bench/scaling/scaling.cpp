@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstdlib>
 #include <lib/files.hpp>
 #include <lib/gnuplot.hpp>
 #include <scaling/job.hpp>
@@ -57,6 +58,8 @@ void run_scaling(const CommonOptions& common, const ScalingOptions& options) {
   if (job.neighbours.empty())
     job.neighbours = common.quick ? std::vector<int>{18} : std::vector<int>{18, 32, 56, 80};
   for (const int neighbours : job.neighbours) neighbourhood<3>(neighbours, Arrangement::lattice);
+  if (!std::getenv("OMP_PROC_BIND"))
+    progress.say("Steadier with OMP_PROC_BIND=true in the environment, and with nothing else running.");
   make_folder(common.out);
   const std::string machine = machine_description();
   write_file(common.out / "machine.txt", machine + '\n');
