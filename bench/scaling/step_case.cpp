@@ -1,6 +1,7 @@
 #include <fstream>
 #include <scaling/peak_memory.hpp>
 #include <scaling/step_case.hpp>
+#include <string>
 
 namespace taut::bench {
 namespace {
