@@ -31,6 +31,18 @@ TAUT_INLINE void for_slots(const PairList& pairs, Index s, F&& f) {
     f(k, [at = pairs.block(k)](const double* p) TAUT_INLINE_LAMBDA { return gather(p, at); });
 }
 
+/// Asks for what slice s will be the first to touch, a few slices before its turn: the neighbours furthest on.
+/// A component of every row of neighbours is a stream of its own, more than hardware prefetchers follow.
+template <int N>
+TAUT_INLINE void prefetch_neighbours(const PairList& pairs, Index s, const Columns<N>& columns) {
+  constexpr Index ahead = 4;
+  if (s + ahead >= pairs.slices()) return;
+  const std::int64_t k = pairs.gathered(s + ahead);
+  if (k == pairs.begin(s + ahead)) return;
+  const Index last = pairs.first(k - 1) + lanes - 1;
+  for (int c = 0; c < N; ++c) __builtin_prefetch(columns.c[c] + last);
+}
+
 // A payload gives, for one slice, the eight pair vectors G_ab of a slot: `slice(s).get(k, at, g)`, zero where
 // the slot has no pair.
 
