@@ -56,6 +56,8 @@ std::string style_of(const Series& s) {
       return fmt::format("with points lc rgb '{}' lw 1.6 pt {} ps 1.15", run_colour(s.colour), hollow[mark]);
     case Series::Style::bar:
       return fmt::format("with boxes fill solid 1 noborder lc rgb '{}'", run_colour(s.colour));
+    case Series::Style::scatter:
+      return fmt::format("with points lc rgb '{}' pt {} ps 0.75", run_colour(s.colour), filled[mark]);
     case Series::Style::run:
       break;
   }
@@ -179,12 +181,14 @@ std::string script_of(const Chart& chart) {
 
 bool Chart::empty() const {
   return std::all_of(series.begin(), series.end(), [](const Series& s) {
-    return (s.style != Series::Style::run && s.style != Series::Style::bar) ||
-           (s.x.empty() && s.broke_x.empty());
+    const bool ours = s.style == Series::Style::run || s.style == Series::Style::scatter ||
+                      s.style == Series::Style::bar;
+    return !ours || (s.x.empty() && s.broke_x.empty());
   });
 }
 
 std::string run_colour(int index) {
+  // One more than there are marks, so that colour and mark together tell 56 runs apart.
   static constexpr std::array<const char*, 8> colours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
                                                          "#E69F00", "#56B4E9", "#8C564B", "#7F7F7F"};
   return colours[static_cast<std::size_t>(index) % colours.size()];

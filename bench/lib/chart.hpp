@@ -12,6 +12,7 @@ struct Series {
   enum class Style {
     truth,    ///< black line, drawn on top of nothing else
     run,      ///< coloured line with filled marks
+    scatter,  ///< filled marks of the run's colour, no line
     printed,  ///< hollow marks of the run's colour, no line
     guide,    ///< thin grey dashed line
     bar       ///< bars at the places of `Chart::x_names`, beside those of other series, with their values
