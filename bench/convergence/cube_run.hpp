@@ -1,0 +1,36 @@
+#pragma once
+/// \file
+/// One run of the swinging cube, by a method of the library or by finite elements.
+
+#include <convergence/swinging_cube.hpp>
+#include <lib/results.hpp>
+#include <optional>
+#include <string>
+
+namespace taut::bench {
+
+struct CubeSpec {
+  Method method{};
+  int intervals = 8;  ///< 1/h
+  double jitter = 0;  ///< in spacings
+  unsigned seed = 1;
+};
+
+struct CubeRun {
+  Row row;  ///< all columns but quantity and its value; status ok, broke or skipped
+  std::optional<CubeErrors> snapshot;  ///< at SwingingCube::snapshot()
+  std::optional<CubeErrors> quarter;   ///< root mean square over the quarter period, of 16 instants
+  std::string why;                     ///< skipped: what the method said; broke: how
+};
+
+/// Runs for a quarter period. Laws in rate form know no initial strain: they start a quarter period earlier,
+/// from the undeformed state at full speed, and swing through the same states; their stress is Cauchy's. A
+/// method that cannot take the cube is skipped. Times leave out what looking at the errors takes.
+CubeRun run_cube(const CubeSpec& spec, int threads);
+/// The finite elements of hexahedral_fem.hpp on the same nodes.
+CubeRun run_cube_fem(int intervals, double jitter, unsigned seed, int threads);
+/// Relative L2 error over the free components of the acceleration at t = 0; nothing when the first step
+/// breaks.
+std::optional<double> initial_acceleration_error(const CubeSpec& spec);
+
+}  // namespace taut::bench
