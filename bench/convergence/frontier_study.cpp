@@ -1,0 +1,245 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <convergence/bent_bar.hpp>
+#include <convergence/cube_run.hpp>
+#include <convergence/pareto.hpp>
+#include <convergence/run_row.hpp>
+#include <convergence/study.hpp>
+#include <lib/case.hpp>
+#include <lib/names.hpp>
+#include <lib/progress.hpp>
+#include <lib/scene_loader.hpp>
+#include <taut/core/error.hpp>
+
+namespace taut::bench {
+namespace {
+
+constexpr double jitter = 0.15;
+
+/// One run of a body: its row with quantity, value and cost. The row's error is the body's.
+using BodyRun = std::function<Row(const Method& method, std::size_t level, double jitter)>;
+
+struct Body {
+  std::string name, what;
+  std::vector<std::string> levels;
+  BodyRun run;
+};
+
+struct Choice {
+  Method method;
+  std::size_t level = 0;
+  bool jittered = false;
+  std::vector<double> loop_s;  ///< of the repeats
+  Row row;
+};
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  return n % 2 ? values[n / 2] : (values[n / 2 - 1] + values[n / 2]) / 2;
+}
+
+std::string label_of(const Method& m) {
+  return fmt::format("{}, {}, {:g} dx", m.formulation == "tl_displacement" ? "" : m.formulation, m.operators,
+                     m.support_dx)
+      .substr(m.formulation == "tl_displacement" ? 2 : 0);
+}
+
+Body cube_body(bool quick, int threads) {
+  const std::vector<int> intervals = quick ? std::vector<int>{4, 8} : std::vector<int>{8, 16, 32};
+  Body body{"swinging_cube", "velocity of the swinging cube over a quarter period", {}, {}};
+  for (const int n : intervals) body.levels.push_back(fmt::format("1/{}", n));
+  body.run = [=](const Method& method, std::size_t level, double amount) {
+    const CubeRun run = run_cube({method, intervals[level], amount, 1}, threads);
+    Row row = run.row;
+    row.quantity = "velocity_error_quarter_period";
+    if (run.quarter) row.value = row.error = run.quarter->velocity;
+    return row;
+  };
+  return body;
+}
+
+Body bar_body(bool quick, int threads) {
+  const std::vector<int> intervals = quick ? std::vector<int>{4} : std::vector<int>{4, 8, 12};
+  Body body{"bent_bar", "tip deflection of the bar in pure bending (3D)", {}, {}};
+  for (const int n : intervals) body.levels.push_back(fmt::format("1/{}", n));
+  body.run = [=](const Method& method, std::size_t level, double amount) {
+    Row row = run_bent_bar(method, intervals[level], amount, 1, threads).row;
+    row.quantity = "tip_uy";
+    return row;
+  };
+  return body;
+}
+
+Body cantilever_body(const StudyOptions& options) {
+  const auto scene = std::make_shared<Scene>(
+      load_scene(options.scenes / "cantilever_convergence.toml", options.common.quick));
+  const std::vector<double> spacings =
+      options.common.quick ? std::vector<double>{4e-3} : std::vector<double>{4e-3, 2e-3, 1e-3};
+  Body body{"cantilever", "tip deflection of the cantilever at −250 N", {}, {}};
+  for (const double dx : spacings) body.levels.push_back(fmt::format("{:g} mm", dx * 1e3));
+  body.run = [=, threads = options.common.threads](const Method& method, std::size_t level, double amount) {
+    RunSpec spec = scene->runs.at(0);
+    spec.method = method;
+    spec.lattice.jitter = amount;
+    spec.only.clear();
+    spec.solve.max_steps = static_cast<std::int64_t>(1000 * scene->geometry.max.at(0) / spacings[level]);
+    SweepPoint point = scene->points().front();
+    point["dx"] = spacings[level];
+    Row row = run_case(*scene, spec, point, {}).rows(threads).at(0);
+    row.scene = std::string("cantilever_") + (amount > 0 ? "jittered" : "lattice");
+    return row;
+  };
+  return body;
+}
+
+std::vector<Method> methods(bool quick) {
+  std::vector<Method> all;
+  for (const std::string& operators : names().operators)
+    for (const double support_dx : {1.5, 2.4})
+      for (const char* kernel : {"wendland_c2", "quadratic"})
+        for (const PairPrecision precision :
+             {PairPrecision::single_precision, PairPrecision::double_precision}) {
+          if (quick && (kernel != std::string("wendland_c2") || precision == PairPrecision::double_precision))
+            continue;
+          Method m;
+          m.operators = operators;
+          m.support_dx = support_dx;
+          m.kernel = kernel;
+          m.pair_precision = precision;
+          all.push_back(m);
+        }
+  return all;
+}
+
+/// Size of the error; nothing for a run that broke or was skipped.
+std::optional<double> error_size(const Row& row) {
+  if (row.status != "ok" || !row.error || !std::isfinite(*row.error)) return {};
+  return std::abs(*row.error);
+}
+
+void report(const Body& body, bool jittered, const std::vector<Choice>& choices, int repeats,
+            Section& section) {
+  const char* cloud = jittered ? "jittered" : "lattice";
+  const std::string cost_names[] = {"loop time [s]", "steps × pairs"};
+  for (int kind = 0; kind < 2; ++kind) {
+    Chart chart{fmt::format("frontier_{}_{}_{}", body.name, cloud, kind == 0 ? "time" : "work"),
+                fmt::format("{}, {}: error against {}", body.what, cloud,
+                            kind == 0 ? "loop time" : "pair evaluations"),
+                "Each mark is one combination of operators, support radius, kernel, spacing and pair "
+                "precision; the line is the Pareto front. "
+                "Down and left is better.",
+                cost_names[kind],
+                "|error| [%]",
+                true,
+                true,
+                false,
+                {}};
+    std::vector<double> cost, error;
+    std::vector<const Choice*> shown;
+    std::vector<std::string> labels;
+    for (const Choice& c : choices) {
+      const auto e = error_size(c.row);
+      if (c.jittered != jittered || !e || *e == 0) continue;
+      cost.push_back(kind == 0 ? median(c.loop_s)
+                               : static_cast<double>(*c.row.steps) * static_cast<double>(*c.row.pairs));
+      error.push_back(100 * *e);
+      shown.push_back(&c);
+      const std::string label = label_of(c.method);
+      auto found = std::find(labels.begin(), labels.end(), label);
+      if (found == labels.end()) {
+        labels.push_back(label);
+        found = labels.end() - 1;
+        chart.series.push_back(
+            {label, Series::Style::scatter, static_cast<int>(labels.size()) - 1, {}, {}, {}, true});
+      }
+      Series& series = chart.series[static_cast<std::size_t>(found - labels.begin())];
+      series.x.push_back(cost.back()), series.y.push_back(error.back());
+    }
+    Series front{"Pareto front", Series::Style::truth, 0, {}, {}, {}, false};
+    TextTable table{
+        fmt::format("Pareto front: {}, {}", body.what, cloud),
+        fmt::format("Loop time: median of {} repeat(s).", repeats),
+        {"operators, support", "kernel", "precision", "dx", "error", "loop time", "steps × pairs"},
+        {}};
+    for (const std::size_t i : pareto_front(cost, error)) {
+      front.x.push_back(cost[i]), front.y.push_back(error[i]);
+      const Choice& c = *shown[i];
+      table.rows.push_back(
+          {{label_of(c.method), ""},
+           {c.method.kernel, ""},
+           {to_string(c.method.pair_precision), ""},
+           {body.levels[c.level], ""},
+           {fmt::format("{:.3g} %", error[i]), "number"},
+           {fmt::format("{:.3g} s", median(c.loop_s)), "number"},
+           {fmt::format("{:.3g}", static_cast<double>(*c.row.steps) * static_cast<double>(*c.row.pairs)),
+            "number"}});
+    }
+    chart.series.push_back(std::move(front));
+    section.charts.push_back(std::move(chart));
+    if (kind == 0) section.tables.push_back(std::move(table));
+  }
+}
+
+}  // namespace
+
+Section study_frontier(const StudyOptions& options) {
+  const bool quick = options.common.quick;
+  const int threads = options.common.threads, repeats = quick ? 1 : 3;
+  Section section;
+  section.title = "Error against cost";
+  section.text.push_back(
+      fmt::format("The swinging cube, the cantilever and a bar in pure bending (3D, exact: 3 m by 1 m by 1 "
+                  "m, a quarter modelled), total Lagrangian, under every "
+                  "operator, two support radii, two kernels, single and double pair vectors, at several "
+                  "spacings. Times are those of the time loops alone, medians "
+                  "of {} repeat(s) that take turns; set-up is in results.csv.",
+                  repeats));
+  const std::vector<Body> bodies = {cube_body(quick, threads), cantilever_body(options),
+                                    bar_body(quick, threads)};
+  const std::vector<Method> all = methods(quick);
+  std::size_t items = 0, item = 0;
+  for (const Body& body : bodies) items += body.levels.size() * all.size() * 2;
+  ProgressLine progress(options.common.quiet, items * static_cast<std::size_t>(repeats));
+  for (const Body& body : bodies) {
+    std::vector<Choice> choices;
+    for (std::size_t level = 0; level < body.levels.size(); ++level)
+      for (const bool jittered : {false, true})
+        for (const Method& m : all) choices.push_back({m, level, jittered, {}, {}});
+    for (int repeat = 0; repeat < repeats; ++repeat)
+      for (Choice& c : choices) {
+        progress.begin(
+            item++, fmt::format("{}, {}, {}, {}, {}, dx {}", body.name, c.jittered ? "jittered" : "lattice",
+                                label_of(c.method), c.method.kernel, to_string(c.method.pair_precision),
+                                body.levels[c.level]));
+        try {
+          c.row = body.run(c.method, c.level, c.jittered ? jitter : 0);
+        } catch (const InputError& error) {  // a combination that the library does not take
+          set_method(c.row, c.method);
+          c.row.scene = body.name + (c.jittered ? "_jittered" : "_lattice");
+          c.row.status = std::string("skipped");
+          progress.end(std::string("skipped: ") + error.what());
+          c.loop_s.push_back(0);
+          continue;
+        }
+        c.loop_s.push_back(c.row.loop_s.value_or(0));
+        const auto e = error_size(c.row);
+        progress.end(e ? fmt::format("error {:.3g} %, loop {:.3g} s", 100 * *e, c.loop_s.back())
+                       : c.row.status);
+      }
+    for (const Choice& c : choices) {
+      Row row = c.row;
+      if (row.loop_s) row.loop_s = median(c.loop_s);
+      if (row.loop_s && *row.loop_s > 0 && row.particles && row.steps)
+        row.particle_steps_per_s =
+            static_cast<double>(*row.particles) * static_cast<double>(*row.steps) / *row.loop_s;
+      section.rows.push_back(std::move(row));
+    }
+    for (const bool jittered : {false, true}) report(body, jittered, choices, repeats, section);
+  }
+  return section;
+}
+
+}  // namespace taut::bench
