@@ -35,8 +35,10 @@ std::vector<Method> methods() {
   return all;
 }
 
+/// The common formulation goes without saying.
 std::string label_of(const Method& m) {
-  return fmt::format("{}, {}, {:g} dx{}", m.formulation, m.operators, m.support_dx,
+  const std::string formulation = m.formulation == "tl_displacement" ? "" : m.formulation + ", ";
+  return fmt::format("{}{}, {:g} dx{}", formulation, m.operators, m.support_dx,
                      m.zero_energy_control > 0 ? fmt::format(", control {:g}", m.zero_energy_control) : "");
 }
 
@@ -68,7 +70,9 @@ class CubeStudy {
         "waves from the faces meet it at one phase or another. "
         "Lattice: node-centred. Jittered: inner points moved by up to {:g} spacings along each axis; mean of "
         "{} seeds. Black: trilinear finite "
-        "elements with lumped mass and eight Gauss points on the same nodes, with the same time step.",
+        "elements with lumped mass and eight Gauss points on the same nodes, with the same time step. "
+        "Methods "
+        "without a formulation before them: tl_displacement.",
         jitter, seeds_));
     for (const bool jittered : {false, true}) study(jittered);
     if (!skipped_.empty()) {
@@ -195,7 +199,7 @@ class CubeStudy {
       section_.charts.push_back(
           error_chart(part, per_h,
                       {fmt::format("swinging_cube_{}_{}_{}", all.quantity, cloud, family),
-                       fmt::format("Swinging cube, {}: error of {}, {} Lagrangian", cloud, what, family),
+                       fmt::format("Swinging cube, {}, {} Lagrangian: {}", cloud, family, what),
                        "Relative L2 error over particles and times. Dashed: first and second order.",
                        "1/h",
                        "error [%]",

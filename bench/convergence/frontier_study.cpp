@@ -41,11 +41,7 @@ double median(std::vector<double> values) {
   return n % 2 ? values[n / 2] : (values[n / 2 - 1] + values[n / 2]) / 2;
 }
 
-std::string label_of(const Method& m) {
-  return fmt::format("{}, {}, {:g} dx", m.formulation == "tl_displacement" ? "" : m.formulation, m.operators,
-                     m.support_dx)
-      .substr(m.formulation == "tl_displacement" ? 2 : 0);
-}
+std::string label_of(const Method& m) { return fmt::format("{}, {:g} dx", m.operators, m.support_dx); }
 
 Body cube_body(bool quick, int threads) {
   const std::vector<int> intervals = quick ? std::vector<int>{4, 8} : std::vector<int>{8, 16, 32};
@@ -126,8 +122,8 @@ void report(const Body& body, bool jittered, const std::vector<Choice>& choices,
   const std::string cost_names[] = {"loop time [s]", "steps × pairs"};
   for (int kind = 0; kind < 2; ++kind) {
     Chart chart{fmt::format("frontier_{}_{}_{}", body.name, cloud, kind == 0 ? "time" : "work"),
-                fmt::format("{}, {}: error against {}", body.what, cloud,
-                            kind == 0 ? "loop time" : "pair evaluations"),
+                fmt::format("Error against {}: {}, {}", kind == 0 ? "loop time" : "pair evaluations",
+                            body.what, cloud),
                 "Each mark is one combination of operators, support radius, kernel, spacing and pair "
                 "precision; the line is the Pareto front. "
                 "Down and left is better.",
@@ -137,6 +133,8 @@ void report(const Body& body, bool jittered, const std::vector<Choice>& choices,
                 true,
                 false,
                 {}};
+    // First, so that the marks stand on it.
+    chart.series.push_back({"Pareto front", Series::Style::truth, 0, {}, {}, {}, false});
     std::vector<double> cost, error;
     std::vector<const Choice*> shown;
     std::vector<std::string> labels;
@@ -155,17 +153,16 @@ void report(const Body& body, bool jittered, const std::vector<Choice>& choices,
         chart.series.push_back(
             {label, Series::Style::scatter, static_cast<int>(labels.size()) - 1, {}, {}, {}, true});
       }
-      Series& series = chart.series[static_cast<std::size_t>(found - labels.begin())];
+      Series& series = chart.series[static_cast<std::size_t>(found - labels.begin()) + 1];
       series.x.push_back(cost.back()), series.y.push_back(error.back());
     }
-    Series front{"Pareto front", Series::Style::truth, 0, {}, {}, {}, false};
     TextTable table{
         fmt::format("Pareto front: {}, {}", body.what, cloud),
         fmt::format("Loop time: median of {} repeat(s).", repeats),
         {"operators, support", "kernel", "precision", "dx", "error", "loop time", "steps × pairs"},
         {}};
     for (const std::size_t i : pareto_front(cost, error)) {
-      front.x.push_back(cost[i]), front.y.push_back(error[i]);
+      chart.series[0].x.push_back(cost[i]), chart.series[0].y.push_back(error[i]);
       const Choice& c = *shown[i];
       table.rows.push_back(
           {{label_of(c.method), ""},
@@ -177,7 +174,6 @@ void report(const Body& body, bool jittered, const std::vector<Choice>& choices,
            {fmt::format("{:.3g}", static_cast<double>(*c.row.steps) * static_cast<double>(*c.row.pairs)),
             "number"}});
     }
-    chart.series.push_back(std::move(front));
     section.charts.push_back(std::move(chart));
     if (kind == 0) section.tables.push_back(std::move(table));
   }

@@ -57,7 +57,7 @@ std::string style_of(const Series& s) {
     case Series::Style::bar:
       return fmt::format("with boxes fill solid 1 noborder lc rgb '{}'", run_colour(s.colour));
     case Series::Style::scatter:
-      return fmt::format("with points lc rgb '{}' pt {} ps 0.75", run_colour(s.colour), filled[mark]);
+      return fmt::format("with points lc rgb '{}' pt {} ps 1", run_colour(s.colour), filled[mark]);
     case Series::Style::run:
       break;
   }
@@ -96,7 +96,7 @@ std::string named_ticks(const std::vector<std::string>& names) {
 int legend_columns(const Chart& chart) {
   std::size_t longest = 0;
   for (const Series& s : chart.series) longest = std::max(longest, s.label.size());
-  return longest > 46 || chart.series.size() < 4 ? 1 : 2;
+  return longest > 38 || chart.series.size() < 4 ? 1 : 2;
 }
 int legend_rows(const Chart& chart) {
   const int entries = static_cast<int>(chart.series.size()), columns = legend_columns(chart);
