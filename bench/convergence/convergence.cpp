@@ -7,6 +7,7 @@
 #include <lib/files.hpp>
 #include <lib/gnuplot.hpp>
 #include <lib/progress.hpp>
+#include <lib/report.hpp>
 #include <lib/scene_loader.hpp>
 #include <taut/core/error.hpp>
 
@@ -30,17 +31,7 @@ void write_section(HtmlPage& page, const Section& section, const std::filesystem
                    std::vector<std::string>& missing) {
   page.heading(2, section.title);
   for (const std::string& text : section.text) page.paragraph(text);
-  for (const Chart& chart : section.charts) {
-    std::string why;
-    if (write_chart(chart, out / "charts", why))
-      page.figure(out / "charts" / (chart.name + ".svg"), chart.title + ". " + chart.caption);
-    else {
-      missing.push_back("charts/" + chart.name + ".svg: " + why);
-      page.paragraph(
-          fmt::format("{}: no chart ({}); its numbers are in charts/{}.csv.", chart.title, why, chart.name),
-          "quiet");
-    }
-  }
+  for (const Chart& chart : section.charts) add_chart(page, chart, out, missing);
   for (const TextTable& table : section.tables) {
     page.heading(3, table.title);
     page.table(table.header, table.rows);

@@ -204,17 +204,7 @@ void write_values(HtmlPage& page, const SceneReport& part, const ProbeSpec& prob
 
 void write_charts(HtmlPage& page, const SceneReport& part, const std::filesystem::path& out,
                   std::vector<std::string>& missing) {
-  for (const Chart& chart : charts_of(*part.scene, part.cases)) {
-    std::string why;
-    if (write_chart(chart, out / "charts", why))
-      page.figure(out / "charts" / (chart.name + ".svg"), chart.title + ". " + chart.caption);
-    else {
-      missing.push_back("charts/" + chart.name + ".svg: " + why);
-      page.paragraph(
-          fmt::format("{}: no chart ({}); its numbers are in charts/{}.csv.", chart.title, why, chart.name),
-          "quiet");
-    }
-  }
+  for (const Chart& chart : charts_of(*part.scene, part.cases)) add_chart(page, chart, out, missing);
 }
 
 void write_pictures(HtmlPage& page, const SceneReport& part, const std::filesystem::path& out,
@@ -267,6 +257,17 @@ void write_cases(const Report& report, const std::filesystem::path& out) {
 }
 
 }  // namespace
+
+void add_chart(HtmlPage& page, const Chart& chart, const std::filesystem::path& out,
+               std::vector<std::string>& missing) {
+  std::string why;
+  if (write_chart(chart, out / "charts", why))
+    return page.figure(out / "charts" / (chart.name + ".svg"), chart.title + ". " + chart.caption);
+  missing.push_back("charts/" + chart.name + ".svg: " + why);
+  page.paragraph(
+      fmt::format("{}: no chart ({}); its numbers are in charts/{}.csv.", chart.title, why, chart.name),
+      "quiet");
+}
 
 std::vector<std::string> write_report(const Report& report, const std::filesystem::path& out) {
   std::vector<std::string> missing;

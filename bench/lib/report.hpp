@@ -4,6 +4,8 @@
 
 #include <filesystem>
 #include <lib/case.hpp>
+#include <lib/chart.hpp>
+#include <lib/html.hpp>
 #include <string>
 #include <vector>
 
@@ -21,6 +23,11 @@ struct Report {
   double wall_s = 0;
   std::vector<SceneReport> scenes;
 };
+
+/// Writes a chart to OUT/charts and puts it on the page; without gnuplot a note stands there instead, and
+/// what could not be drawn, and why, is added to `missing`. \throws RunError
+void add_chart(HtmlPage& page, const Chart& chart, const std::filesystem::path& out,
+               std::vector<std::string>& missing);
 
 /// Writes report.html, cases.csv, charts/ and pictures/ under `out`. Returns what could not be drawn, and
 /// why. \throws RunError
