@@ -146,28 +146,46 @@ Keys row_keys(const PointView<D>& points, double cell) {
   return keys;
 }
 
+// Keys of points, sorted later, and the lowest bits of them that tell apart points of one row or cell.
+struct SortKeys {
+  Keys keys;
+  int within;
+};
+
+// Where spacings differ, a cell that suits the widest holds hundreds of the narrowest: keys follow the curve
+// through cells this many times halved, and only crowded cells use those digits.
+constexpr int halvings = 4;
+constexpr Index crowd = 32;
+
 template <int D>
-Keys curve_keys(const PointView<D>& points, double cell) {
+SortKeys curve_keys(const PointView<D>& points, double cell) {
+  constexpr double parts = 1 << halvings;
   std::array<Ranks, D> cells;
   int bits = 1;
   for (int d = 0; d < D; ++d) {
     cells[d] = rank_cells(points.x[d], points.n, cell);
-    bits = std::max(bits, static_cast<int>(std::bit_width(cells[d].rank.back())));
+    bits = std::max(bits, static_cast<int>(std::bit_width(cells[d].rank.back())) + halvings);
   }
   const int shift = std::max(0, bits - 63 / D);
   Keys keys(static_cast<std::size_t>(points.n));
 #pragma omp parallel for schedule(static) if (detail::worth_threads(points.n))
   for (Index i = 0; i < points.n; ++i) {
     std::array<std::uint64_t, D> c;
-    for (int d = 0; d < D; ++d) c[d] = cells[d](points.x[d][i]) >> shift;
+    for (int d = 0; d < D; ++d) {
+      const double x = points.x[d][i] / cell;
+      const double part = std::min((x - std::floor(x)) * parts, parts - 1);  // 0 where x is beyond 2^53
+      c[d] = (cells[d](points.x[d][i]) << halvings | static_cast<std::uint64_t>(part)) >> shift;
+    }
     keys[static_cast<std::size_t>(i)] = hilbert<D>(c, bits - shift);
   }
-  return keys;
+  return {std::move(keys), D * std::max(0, halvings - shift)};
 }
 
-// Sorts the points that share a key: in rows the first coordinate decides, in cells the last.
+// Sorts the points of each row, or cell: in rows the first coordinate decides, in cells the last. A crowded
+// cell falls into those of the next digit of its keys, as long as `within` leaves one.
 template <int D>
-void sort_equal_keys(const PointView<D>& points, const Keys& sorted, bool rows, std::vector<Index>& order) {
+void sort_within(const PointView<D>& points, const Keys& sorted, int within, bool rows,
+                 std::vector<Index>& order) {
   const auto before = [&](Index a, Index b) {
     for (int i = 0; i < D; ++i) {
       const double* x = points.x[rows ? i : D - 1 - i];
@@ -175,13 +193,27 @@ void sort_equal_keys(const PointView<D>& points, const Keys& sorted, bool rows, 
     }
     return a < b;
   };
+  const auto same = [&](Index i, Index j, int shift) {
+    return sorted[static_cast<std::size_t>(i)] >> shift == sorted[static_cast<std::size_t>(j)] >> shift;
+  };
+  const auto sort_cell = [&](auto&& self, Index begin, Index end, int shift) -> void {
+    if (shift == 0 || end - begin <= crowd) {
+      std::sort(order.begin() + begin, order.begin() + end, before);
+      return;
+    }
+    shift -= D;
+    for (Index i = begin; i < end;) {
+      const Index from = i++;
+      while (i < end && same(i, from, shift)) ++i;
+      self(self, from, i, shift);
+    }
+  };
 #pragma omp parallel for schedule(dynamic, 4096) if (detail::worth_threads(points.n))
   for (Index i = 0; i < points.n; ++i) {
-    const auto at = [&](Index j) { return sorted[static_cast<std::size_t>(j)]; };
-    if (i > 0 && at(i) == at(i - 1)) continue;
+    if (i > 0 && same(i, i - 1, within)) continue;
     Index end = i + 1;
-    while (end < points.n && at(end) == at(i)) ++end;
-    std::sort(order.begin() + i, order.begin() + end, before);
+    while (end < points.n && same(end, i, within)) ++end;
+    sort_cell(sort_cell, i, end, within);
   }
 }
 
@@ -195,13 +227,13 @@ std::vector<Index> locality_order(PointView<D> points, double cell) {
   std::vector<Index> order(static_cast<std::size_t>(points.n));
   if (points.n == 0) return order;
 
-  Keys keys = row_keys(points, cell);
-  const bool rows = !keys.empty();
-  if (!rows) keys = curve_keys(points, cell);
-  const auto largest = *std::max_element(keys.begin(), keys.end());
-  const auto from = detail::sort_by_key(std::span(keys), std::bit_width(largest));
+  SortKeys by{row_keys(points, cell), 0};
+  const bool rows = !by.keys.empty();
+  if (!rows) by = curve_keys(points, cell);
+  const auto largest = *std::max_element(by.keys.begin(), by.keys.end());
+  const auto from = detail::sort_by_key(std::span(by.keys), std::bit_width(largest));
   std::copy_n(from.get(), order.size(), order.begin());
-  sort_equal_keys(points, keys, rows, order);
+  sort_within(points, by.keys, by.within, rows, order);
   return order;
 }
 

@@ -115,6 +115,15 @@ TEST_CASE_TEMPLATE("consecutive cells of the curve are neighbours", Dimension, s
   }
 }
 
+TEST_CASE_TEMPLATE("crowded cells follow the curve too", Dimension, std::integral_constant<int, 2>,
+                   std::integral_constant<int, 3>) {
+  constexpr int D = Dimension::value;
+  const auto p = random_cloud<D>(4000);
+  const double radius = D == 2 ? 0.04 : 0.12;
+  const double suited = spread(p.reordered(locality_order(p.view(), radius)), radius);
+  CHECK(spread(p.reordered(locality_order(p.view(), 8 * radius)), radius) < 1.1 * suited);
+}
+
 TEST_CASE("the order depends on where points are, not on how they came") {
   const auto p = random_cloud<3>(1000);
   const auto mixed = p.reordered(shuffled<3>(1000));

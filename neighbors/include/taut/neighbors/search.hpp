@@ -43,7 +43,8 @@ PairList find_pairs(PointView<D> points, std::span<const double> radii, SearchOp
 
 /// New order for locality: `order[new] = old`. Lattices (points on few distinct coordinates, rounding aside)
 /// are put in lexicographic order, last coordinate slowest; other clouds follow a Hilbert curve of cells of
-/// size `cell` [m], and within a cell the coordinates, last slowest. Depends on the positions alone. \throws
+/// size `cell` [m], those of more than 32 points halved up to four times, and within a cell the coordinates,
+/// last slowest. Depends on the positions alone. \throws
 /// InputError for a coordinate that is not finite, a cell size that is not positive and finite.
 template <int D>
 std::vector<Index> locality_order(PointView<D> points, double cell);
