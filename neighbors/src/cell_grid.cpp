@@ -1,7 +1,10 @@
 #include "cell_grid.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
+#include <memory>
 
 #include "lanes.hpp"
 #include "parallel.hpp"
@@ -19,8 +22,6 @@ inline std::uint64_t as_bits(double cell) {
                                  : std::bit_cast<std::uint64_t>(cell);
 }
 
-typedef std::uint32_t Places __attribute__((vector_size(16)));
-
 inline std::uint64_t mix(std::uint64_t h) {  // finaliser of splitmix64 (Steele, Lea and Flood 2014)
   h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9;
   h = (h ^ (h >> 27)) * 0x94d049bb133111eb;
@@ -30,28 +31,30 @@ inline std::uint64_t mix(std::uint64_t h) {  // finaliser of splitmix64 (Steele,
 }  // namespace
 
 template <int D>
-CellGrid<D>::CellGrid(const PointView<D>& points, const Radii& radii, const Level& level)
-    : n_(level.members.empty() ? points.n : static_cast<Index>(level.members.size())),
-      graded_(radii.graded()),
-      radius_(level.radius) {
+CellGrid<D>::CellGrid(std::span<const Cluster<D>> clusters, const std::vector<Index>& members, bool graded)
+    : n_(static_cast<Index>(members.empty() ? clusters.size() : members.size())), graded_(graded) {
   if (n_ == 0) return;
-  const Index* members = level.members.empty() ? nullptr : level.members.data();
-  const auto particle = [members](std::int64_t i) { return members ? members[i] : static_cast<Index>(i); };
+  const auto cluster = [&](Index i) -> const Cluster<D>& {
+    const Index c = members.empty() ? i : members[static_cast<std::size_t>(i)];
+    return clusters[static_cast<std::size_t>(c)];
+  };
 
+  double first[D], last[D];
+  for (int d = 0; d < D; ++d) first[d] = last[d] = cluster(0).box.low[d];
+  for (Index i = 0; i < n_; ++i) {
+    const Cluster<D>& c = cluster(i);
+    radius_ = std::max(radius_, c.radius);
+    for (int d = 0; d < D; ++d) {
+      first[d] = std::min(first[d], c.box.low[d]);
+      last[d] = std::max(last[d], c.box.low[d]);
+      longest_[d] = std::max(longest_[d], c.box.high[d] - c.box.low[d]);
+    }
+  }
   double cells = 1;
   for (int d = 0; d < D; ++d) {
-    size_[d] = d == 0 ? radius_ / 2 : radius_;
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-#pragma omp parallel for schedule(static) reduction(min                  \
-                                                    : low) reduction(max \
-                                                                     : high) if (detail::worth_threads(n_))
-    for (Index i = 0; i < n_; ++i) {
-      const double x = points.x[d][particle(i)];
-      low = std::min(low, x);
-      high = std::max(high, x);
-    }
-    low_[d] = cell_of(low, size_[d]);
-    high_[d] = cell_of(high, size_[d]);
+    longest_[d] = std::nextafter(longest_[d], std::numeric_limits<double>::infinity());  // it was rounded
+    low_[d] = cell_of(first[d], radius_);
+    high_[d] = cell_of(last[d], radius_);
     extent_[d] = high_[d] - low_[d] + 1;
     cells *= extent_[d];
   }
@@ -59,10 +62,10 @@ CellGrid<D>::CellGrid(const PointView<D>& points, const Radii& radii, const Leve
   buckets_ = dense_ ? static_cast<std::uint64_t>(cells) : std::bit_ceil(2 * static_cast<std::uint64_t>(n_));
 
   auto keys = std::make_unique_for_overwrite<std::uint32_t[]>(static_cast<std::size_t>(n_));
-#pragma omp parallel for schedule(static) if (detail::worth_threads(n_))
+#pragma omp parallel for schedule(static) if (worth_threads(n_))
   for (Index i = 0; i < n_; ++i) {
     double cell[3] = {};
-    for (int d = 0; d < D; ++d) cell[d] = cell_of(points.x[d][particle(i)], size_[d]);
+    for (int d = 0; d < D; ++d) cell[d] = cell_of(cluster(i).box.low[d], radius_);
     const std::uint64_t x = dense_ ? static_cast<std::uint64_t>(cell[0] - low_[0]) : as_bits(cell[0]);
     const std::uint64_t key = row(cell[1], cell[2]) + x;
     keys[i] = static_cast<std::uint32_t>(dense_ ? key : key & (buckets_ - 1));
@@ -71,23 +74,31 @@ CellGrid<D>::CellGrid(const PointView<D>& points, const Radii& radii, const Leve
       sort_by_key(std::span(keys.get(), static_cast<std::size_t>(n_)), std::bit_width(buckets_ - 1));
 
   const auto size = static_cast<std::size_t>(n_) + lanes;
-  for (int d = 0; d < D; ++d) x_[d] = AlignedArray<double>(size);
+  for (int d = 0; d < D; ++d) {
+    lows_[d] = AlignedArray<double>(size);
+    highs_[d] = AlignedArray<double>(size);
+  }
   if (graded_) r2_ = AlignedArray<double>(size);
-  id_ = AlignedArray<Index>(size);
+  slice_ = AlignedArray<Index>(size);
+  count_.resize(size);
   start_ = AlignedArray<std::uint32_t>(buckets_ + 1);
-#pragma omp parallel for schedule(static) if (detail::worth_threads(n_))
+#pragma omp parallel for schedule(static) if (worth_threads(n_))
   for (Index i = 0; i < n_; ++i) {
-    const Index p = particle(order[i]);
-    for (int d = 0; d < D; ++d) x_[d][i] = points.x[d][p];
-    if (graded_) r2_[i] = radii(p) * radii(p);
-    id_[i] = p;
+    const Cluster<D>& c = cluster(order[i]);
+    for (int d = 0; d < D; ++d) {
+      lows_[d][i] = c.box.low[d];
+      highs_[d][i] = c.box.high[d];
+    }
+    if (graded_) r2_[i] = c.radius * c.radius;
+    slice_[i] = c.slice;
+    count_[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(c.count);
     for (std::uint64_t k = i == 0 ? 0 : keys[i - 1] + std::uint64_t{1}; k <= keys[i]; ++k)
       start_[k] = static_cast<std::uint32_t>(i);
   }
-  for (std::uint64_t k = n_ ? keys[n_ - 1] + std::uint64_t{1} : 0; k <= buckets_; ++k)
+  for (std::uint64_t k = keys[n_ - 1] + std::uint64_t{1}; k <= buckets_; ++k)
     start_[k] = static_cast<std::uint32_t>(n_);
   for (int d = 0; d < D; ++d)
-    std::fill(x_[d].end() - lanes, x_[d].end(), std::numeric_limits<double>::quiet_NaN());
+    std::fill(lows_[d].end() - lanes, lows_[d].end(), std::numeric_limits<double>::quiet_NaN());
 }
 
 // Bucket of the cell of a row whose x is zero (hashed) or the lowest (dense).
@@ -105,79 +116,29 @@ std::uint64_t CellGrid<D>::row(double y, double z) const {
 }
 
 template <int D>
-double CellGrid<D>::least_pairs() const {
-  if (!dense_ || n_ == 0) return 0;
-  // Points in one part of 1/2^(D-1) of a cell are less than a radius apart: its sides are half a radius long.
-  constexpr double parts = 1 << (D - 1);
-  double pairs = 0;
-  for (std::uint64_t k = 0; k < buckets_; ++k) {
-    const double count = start_[k + 1] - start_[k];
-    if (count > parts) pairs += count * (count / parts - 1);
-  }
-  return pairs;
-}
-
-template <int D>
-void CellGrid<D>::collect(const Slice<D>& slice, Workspace& work, LaneMasks& masks) const {
-  if (n_ == 0) return;
-  if (graded_)
-    collect_lanes<true>(slice, 0, slice.count, work, masks);
-  else
-    collect_lanes<false>(slice, 0, slice.count, work, masks);
-}
-
-// One search for all lanes is best while they are near each other. Else the lanes are halved; candidates are
-// always tested against all eight, so that a candidate found twice gets the same mask.
-template <int D>
-template <bool graded>
-void CellGrid<D>::collect_lanes(const Slice<D>& slice, int begin, int end, Workspace& work,
-                                LaneMasks& masks) const {
-  const auto bound = [&](int from, int to, Box& box, double& reach) {
-    reach = radius_;
-    if constexpr (graded)
-      for (int l = from; l < to; ++l) reach = std::max(reach, slice.radius[l]);
-    double volume = 1;
-    for (int d = 0; d < D; ++d) {
-      box.low[d] = *std::min_element(slice.x[d] + from, slice.x[d] + to);
-      box.high[d] = *std::max_element(slice.x[d] + from, slice.x[d] + to);
-      volume *= 1 + (box.high[d] - box.low[d]) / (2 * reach);
-    }
-    return volume;  // of the search, in that of one lane alone
-  };
-  Box box;
-  double reach;
-  const double volume = bound(begin, end, box, reach);
-  if (end - begin > 1 && !(volume < 2)) {
-    const int middle = (begin + end) / 2;
-    Box half;
-    double half_reach;
-    const double left = bound(begin, middle, half, half_reach), right = bound(middle, end, half, half_reach);
-    if (!(volume <= std::min<double>(left + right, end - begin))) {
-      collect_lanes<graded>(slice, begin, middle, work, masks);
-      collect_lanes<graded>(slice, middle, end, work, masks);
-      return;
-    }
-  }
+std::size_t CellGrid<D>::find(const Box<D>& box, double reach, Workspace& work) const {
+  if (n_ == 0) return 0;
+  reach = std::max(reach, radius_);
   find_runs(box, reach, work.runs);
-  test_candidates<graded>(slice, filter<graded>(box, reach, work), work, masks);
+  return graded_ ? filter<true>(box, reach, work) : filter<false>(box, reach, work);
 }
 
-// The runs of sorted points that lie in cells within reach of the box. Runs may overlap.
+// The runs of sorted clusters that lie in cells within reach of the box. Runs may overlap.
 template <int D>
-void CellGrid<D>::find_runs(const Box& box, double reach, std::vector<Run>& runs) const {
+void CellGrid<D>::find_runs(const Box<D>& box, double reach, std::vector<Run>& runs) const {
   runs.clear();
   double low[3] = {}, high[3] = {};
   double rows = 1;
   for (int d = 0; d < D; ++d) {
-    low[d] = std::max(cell_of(box.low[d] - reach, size_[d]), low_[d]);
-    high[d] = std::min(cell_of(box.high[d] + reach, size_[d]), high_[d]);
+    low[d] = std::max(cell_of(box.low[d] - reach - longest_[d], radius_), low_[d]);
+    high[d] = std::min(cell_of(box.high[d] + reach, radius_), high_[d]);
     if (!(low[d] <= high[d])) return;
     if (d > 0) rows *= high[d] - low[d] + 1;
   }
   const double along = high[0] - low[0] + 1;
-  const bool more_cells_than_points =
+  const bool more_cells_than_clusters =
       rows > n_ / 4 + 16 || (!dense_ && along >= static_cast<double>(buckets_));
-  if (more_cells_than_points) {
+  if (more_cells_than_clusters) {
     runs.push_back({0, static_cast<std::uint32_t>(n_)});
     return;
   }
@@ -207,88 +168,60 @@ void CellGrid<D>::find_runs(const Box& box, double reach, std::vector<Run>& runs
     }
 }
 
-// Candidates: the points nearer to the box than the radius. The distance to the box is rounded as the
-// distance to a point is, hence never larger than the distance to a point of the box. Returns their number.
+// Clusters nearer to the box than the radius. The distance between boxes is rounded as that between points
+// is, hence never larger than the distance between points of them.
 template <int D>
 template <bool graded>
-std::size_t CellGrid<D>::filter(const Box& box, double reach, Workspace& work) const {
-  std::size_t most = 2 * lanes;
+std::size_t CellGrid<D>::filter(const Box<D>& box, double reach, Workspace& work) const {
+  std::size_t most = lanes;
   for (const Run& run : work.runs) most += run.end - run.begin + lanes;
-  if (work.candidates.size() < most) work.candidates.resize(2 * most);
+  if (work.slices.size() < most) work.slices.resize(2 * most);
 
   Double8 box_low[D], box_high[D];
-  const double* sorted[D];
+  const double *lows[D], *highs[D];
   for (int d = 0; d < D; ++d) {
     box_low[d] = splat8(box.low[d]);
     box_high[d] = splat8(box.high[d]);
-    sorted[d] = x_[d].data();
+    lows[d] = lows_[d].data();
+    highs[d] = highs_[d].data();
   }
-  const double* const sorted_r2 = r2_.data();
+  const double* const r2 = r2_.data();
+  const Index* const slice = slice_.data();
   const Double8 reach2 = splat8(reach * reach), zero = splat8(0);
-  std::uint32_t* out = work.candidates.data();
+  Index* out = work.slices.data();
   for (const Run& run : work.runs)
     for (std::uint32_t j = run.begin; j < run.end;
-         j += lanes) {  // a pack may reach beyond: into points like any others
+         j += lanes) {  // a pack may reach beyond: into clusters like any others
       Double8 d2;
       for (int d = 0; d < D; ++d) {
-        const Double8 x = load8(sorted[d] + j);
-        const Double8 gap = max(zero, max(box_low[d] - x, x - box_high[d]));  // in this order NaN stays NaN
+        const Double8 below = box_low[d] - load8(highs[d] + j), above = load8(lows[d] + j) - box_high[d];
+        const Double8 gap = max(zero, max(below, above));  // in this order NaN stays NaN
         d2 = d == 0 ? gap * gap : d2 + gap * gap;
       }
-      const unsigned near = graded ? less(d2, max(reach2, load8(sorted_r2 + j))) : less(d2, reach2);
-      const std::uint32_t* const places = mask_tables.places[near].data();
-      for (int i = 0; i < lanes; i += 4) {
-        const Places four = load_part<Places>(places + i) + j;
-        std::memcpy(out + i, &four, sizeof four);
-      }
-      out += mask_tables.count[near];
+      const unsigned near = graded ? less(d2, max(reach2, load8(r2 + j))) : less(d2, reach2);
+      out = store_picked(slice + j, near, out);
     }
-  return static_cast<std::size_t>(out - work.candidates.data());
+  return static_cast<std::size_t>(out - work.slices.data());
 }
 
 template <int D>
-template <bool graded>
-void CellGrid<D>::test_candidates(const Slice<D>& slice, std::size_t count, Workspace& work,
-                                  LaneMasks& masks) const {
-  if (work.hits.size() < count + 1) work.hits.resize(2 * count + 1);
-  Double8 x[D];
-  for (int d = 0; d < D; ++d) x[d] = load8(slice.x[d]);
-  const Double8 own_r2 = load8(slice.r2), tiny = splat8(coincident2);
-  Double8 r2 = own_r2, same = own_r2 * tiny;
-  // In registers: the bytes that the loop stores could else be these.
-  const double* sorted[D];
-  for (int d = 0; d < D; ++d) sorted[d] = x_[d].data();
-  const double* const sorted_r2 = r2_.data();
-  const Index* const id = id_.data();
-  const std::uint32_t* const candidates = work.candidates.data();
-  Index* const hits = work.hits.data();
-  std::uint8_t* const lane_masks = &masks[0];
-  const Index first = slice.first;
-  unsigned coincident_lanes = 0;
-  std::size_t found = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint32_t j = candidates[i];
-    Double8 d2;
-    for (int d = 0; d < D; ++d) {
-      const Double8 dx = x[d] - splat8(sorted[d][j]);
-      d2 = d == 0 ? dx * dx : d2 + dx * dx;
+double CellGrid<D>::least_pairs() const {
+  if (!dense_ || n_ == 0) return 0;
+  // Particles in one part of 1/2^D of a cell are less than a radius apart: its sides are half a radius long.
+  constexpr double parts = 1 << D;
+  double pairs = 0;
+  for (std::uint64_t k = 0; k < buckets_; ++k) {
+    if ((start_[k + 1] - start_[k]) * lanes <= parts) continue;
+    double count = 0;  // of particles in clusters that lie wholly in the cell
+    for (std::uint32_t j = start_[k]; j < start_[k + 1]; ++j) {
+      bool inside = true;
+      for (int d = 0; d < D; ++d)
+        inside = inside && cell_of(lows_[d][j], radius_) == cell_of(highs_[d][j], radius_);
+      if (inside) count += count_[j];
     }
-    if constexpr (graded) {
-      const Double8 other_r2 = splat8(sorted_r2[j]);
-      r2 = max(own_r2, other_r2);
-      same = min(own_r2, other_r2) * tiny;
-    }
-    const Index b = id[j];
-    const auto lane = static_cast<std::uint32_t>(b - first);
-    const unsigned self = lane < lanes ? 1u << lane : 0u;
-    const unsigned mask = less(d2, r2) & ~self;
-    coincident_lanes |= ~less(same, d2) & mask;
-    lane_masks[b] = static_cast<std::uint8_t>(mask);
-    hits[found] = b;
-    found += mask != 0;
+    if (count > parts) pairs += count * (count / parts - 1);
   }
-  work.coincident |= coincident_lanes;
-  masks.mark(hits, found);
+  return pairs;
 }
 
 template class CellGrid<1>;

@@ -1,9 +1,31 @@
 #include "kd_tree.hpp"
 
+#include <cmath>
+#include <map>
 #include <nanoflann.hpp>
 
 namespace taut::detail {
 namespace {
+
+// Particles whose radii are alike are searched together. Without members all particles belong.
+struct Level {
+  std::vector<Index> members;
+  double radius = 0;  // the largest
+};
+
+// One level an octave of radii.
+std::vector<Level> levels_of(const Radii& radii, Index n) {
+  if (!radii.graded()) return {Level{{}, radii.one}};
+  std::map<int, Level> octaves;
+  for (Index i = 0; i < n; ++i) {
+    Level& level = octaves[std::ilogb(radii(i))];
+    level.members.push_back(i);
+    level.radius = std::max(level.radius, radii(i));
+  }
+  std::vector<Level> levels;
+  for (auto& [octave, level] : octaves) levels.push_back(std::move(level));
+  return levels;
+}
 
 template <int D>
 struct Points {
@@ -32,8 +54,7 @@ struct Receiver {
   const Slice<D>& slice;
   int lane;
   double reach2;
-  LaneMasks& masks;
-  unsigned& coincident_lanes;
+  typename KdTree<D>::Workspace& work;
 
   double worstDist() const { return reach2; }
   bool full() const { return true; }
@@ -48,9 +69,11 @@ struct Receiver {
     }
     const double other_r2 = points.radii(b) * points.radii(b);
     if (d2 < std::max(slice.r2[lane], other_r2)) {
-      if (d2 <= std::min(slice.r2[lane], other_r2) * coincident2) coincident_lanes |= 1u << lane;
-      masks[b] = static_cast<std::uint8_t>(masks[b] | 1u << lane);
-      masks.mark(&b, 1);
+      if (d2 <= std::min(slice.r2[lane], other_r2) * coincident2) work.coincident |= 1u << lane;
+      std::uint8_t& mask = work.masks.data()[b];
+      mask = static_cast<std::uint8_t>(mask | 1u << lane);
+      const Index s = b / lanes;
+      work.near.insert(&s, 1);
     }
     return true;
   }
@@ -69,22 +92,29 @@ struct KdTree<D>::Tree {
 };
 
 template <int D>
-KdTree<D>::KdTree(const PointView<D>& points, const Radii& radii, const Level& level)
-    : tree_(std::make_unique<Tree>(points, radii, level)) {}
+KdTree<D>::KdTree(const PointView<D>& points, const Radii& radii) {
+  for (const Level& level : levels_of(radii, points.n))
+    trees_.push_back(std::make_unique<Tree>(points, radii, level));
+}
 template <int D>
 KdTree<D>::~KdTree() = default;
-template <int D>
-KdTree<D>::KdTree(KdTree&&) noexcept = default;
 
 template <int D>
-void KdTree<D>::collect(const Slice<D>& slice, Workspace& work, LaneMasks& masks) const {
-  for (int l = 0; l < slice.count; ++l) {
-    const double reach = std::max(slice.radius[l], tree_->points.level.radius) * (1 + 1e-6);
-    Receiver<D> receiver{tree_->points, slice, l, reach * reach, masks, work.coincident};
-    double at[D];
-    for (int d = 0; d < D; ++d) at[d] = slice.x[d][l];
-    tree_->index.findNeighbors(receiver, at, nanoflann::SearchParams(0, 0.0f, false));
-  }
+unsigned KdTree<D>::search(const Slice<D>& slice, Workspace& work, SliceEncoder& encoder) const {
+  work.coincident = 0;
+  for (const auto& tree : trees_)
+    for (int l = 0; l < slice.count; ++l) {
+      const double reach = std::max(slice.radius[l], tree->points.level.radius) * (1 + 1e-6);
+      Receiver<D> receiver{tree->points, slice, l, reach * reach, work};
+      double at[D];
+      for (int d = 0; d < D; ++d) at[d] = slice.x[d][l];
+      tree->index.findNeighbors(receiver, at, nanoflann::SearchParams(0, 0.0f, false));
+    }
+  work.near.drain(0, [&](Index begin, Index end) {
+    encoder.encode_masks(work.masks.data(), std::int64_t{begin} * lanes, std::int64_t{end} * lanes);
+  });
+  encoder.end_slice();
+  return work.coincident;
 }
 
 template class KdTree<1>;

@@ -165,4 +165,18 @@ inline constexpr MaskTables mask_tables = [] {
   return t;
 }();
 
+// Stores those of the eight numbers at `from` that the mask picks; what follows them, up to eight numbers, is
+// overwritten too. Returns the end of those picked.
+inline Index* store_picked(const Index* from, unsigned mask, Index* to) {
+#if defined(__AVX512F__) && defined(__AVX512VL__)
+  const __m256i all = load_part<__m256i>(from);
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(to),
+                      _mm256_maskz_compress_epi32(static_cast<__mmask8>(mask), all));
+#else
+  const std::uint32_t* const places = mask_tables.places[mask].data();
+  for (int i = 0; i < lanes; ++i) to[i] = from[places[i]];
+#endif
+  return to + mask_tables.count[mask];
+}
+
 }  // namespace taut::detail

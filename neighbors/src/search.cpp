@@ -1,12 +1,11 @@
 #include <fmt/format.h>
 
 #include <atomic>
-#include <cmath>
-#include <map>
+#include <bit>
 #include <taut/core/error.hpp>
 #include <taut/neighbors/search.hpp>
 
-#include "cell_grid.hpp"
+#include "cell_search.hpp"
 #include "kd_tree.hpp"
 #include "pair_list_builder.hpp"
 #include "parallel.hpp"
@@ -16,22 +15,7 @@
 namespace taut {
 namespace {
 
-using detail::Level;
 using detail::Radii;
-
-// One level an octave of radii, so that a cell suits the radii of the points in it.
-std::vector<Level> levels_of(const Radii& radii, Index n) {
-  if (!radii.graded()) return {Level{{}, radii.one}};
-  std::map<int, Level> octaves;
-  for (Index i = 0; i < n; ++i) {
-    Level& level = octaves[std::ilogb(radii(i))];
-    level.members.push_back(i);
-    level.radius = std::max(level.radius, radii(i));
-  }
-  std::vector<Level> levels;
-  for (auto& [octave, level] : octaves) levels.push_back(std::move(level));
-  return levels;
-}
 
 // Chunks go to the threads in ascending order and a fault stops only those after it, so that the lowest fault
 // is found whatever the number of threads.
@@ -42,11 +26,8 @@ PairList search(const PointView<D>& points, const Radii& radii) {
   PairListBuilder builder(points.n);
   if (points.n == 0) return builder.build();
 
-  std::vector<Searcher> searchers;
-  for (const Level& level : levels_of(radii, points.n)) searchers.emplace_back(points, radii, level);
-  double least_pairs = 0;
-  for (const Searcher& s : searchers) least_pairs += s.least_pairs();
-  PairListBuilder::check_slots(least_pairs / lanes, points.n);
+  const Searcher searcher(points, radii);
+  PairListBuilder::check_slots(searcher.least_pairs() / lanes, points.n);
 
   std::atomic<Index> next_chunk{0}, first_coincident{points.n};
   std::atomic<std::int64_t> slots{0};
@@ -54,23 +35,20 @@ PairList search(const PointView<D>& points, const Radii& radii) {
   detail::ParallelError error;
 #pragma omp parallel if (detail::worth_threads(points.n))
   error.guard([&] {
-    detail::LaneMasks masks(points.n);
     detail::SliceEncoder encoder(points.n);
-    typename Searcher::Workspace work;
+    typename Searcher::Workspace work(points.n);
     for (Index c = next_chunk++; c < builder.chunks(); c = next_chunk++) {
       std::int64_t counted = 0;
       for (Index s = builder.begin_slice(c); s < builder.end_slice(c); ++s) {
         if (s * lanes > first_coincident || slots > most_slots) return;
         const auto slice = detail::make_slice(points, radii, s);
-        for (const Searcher& searcher : searchers) searcher.collect(slice, work, masks);
-        if (work.coincident) {
-          const Index a = slice.first + std::countr_zero(work.coincident);
+        if (const unsigned coincident = searcher.search(slice, work, encoder)) {
+          const Index a = slice.first + std::countr_zero(coincident);
           Index known = first_coincident;
           while (a < known && !first_coincident.compare_exchange_weak(known, a)) {
           }
           return;
         }
-        encoder.encode(masks);
         if (encoder.slots() - counted > 1 << 16) {
           slots += encoder.slots() - counted;
           counted = encoder.slots();
@@ -89,7 +67,7 @@ PairList search(const PointView<D>& points, const Radii& radii) {
 template <int D>
 PairList search(const PointView<D>& points, const Radii& radii, SearchOptions options) {
   return options.method == SearchMethod::kd_tree ? search<D, detail::KdTree<D>>(points, radii)
-                                                 : search<D, detail::CellGrid<D>>(points, radii);
+                                                 : search<D, detail::CellSearch<D>>(points, radii);
 }
 
 }  // namespace

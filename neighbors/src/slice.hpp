@@ -1,6 +1,7 @@
 #pragma once
 // The eight particles that a search works for at once.
 
+#include <algorithm>
 #include <limits>
 #include <taut/neighbors/search.hpp>
 
@@ -13,6 +14,8 @@ struct Slice {
   double x[D][lanes];  // NaN in unused lanes: no comparison holds there
   double r2[lanes];    // radius squared
   double radius[lanes];
+  double reach;               // the largest radius
+  double middle, per_length;  // of the first coordinate, from first lane to last; lanes a unit of it
 };
 
 // Radii, one for all or one a particle.
@@ -35,6 +38,9 @@ Slice<D> make_slice(const PointView<D>& points, const Radii& radii, Index s) {
     slice.radius[l] = used ? radii(slice.first + l) : 0;
     slice.r2[l] = slice.radius[l] * slice.radius[l];
   }
+  slice.reach = *std::max_element(slice.radius, slice.radius + lanes);
+  slice.middle = (slice.x[0][0] + slice.x[0][lanes - 1]) / 2;
+  slice.per_length = (lanes - 1) / (slice.x[0][lanes - 1] - slice.x[0][0]);
   return slice;
 }
 
@@ -42,11 +48,5 @@ Slice<D> make_slice(const PointView<D>& points, const Radii& radii, Index s) {
 // can keep points apart that are nearer.
 inline constexpr double coincident = 1e-12;
 inline constexpr double coincident2 = coincident * coincident;
-
-// Particles whose radii are alike are searched together. Without members all particles belong.
-struct Level {
-  std::vector<Index> members;
-  double radius = 0;  // the largest
-};
 
 }  // namespace taut::detail

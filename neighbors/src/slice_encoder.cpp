@@ -21,11 +21,8 @@ inline std::uint64_t diagonal(std::uint64_t mask) { return (mask * 0x01010101010
 
 }  // namespace
 
-void SliceEncoder::encode(LaneMasks& masks) {
-  const std::size_t before = entries_.count;
-  loose_.count = 0;
-  masks.drain([&](std::int64_t begin, std::int64_t end) { encode_run(masks, begin, end); });
-
+void SliceEncoder::end_slice() {
+  const std::size_t before = slice_begin_;
   EncodedSlices::Slice slice;
   slice.contiguous = static_cast<std::int64_t>(entries_.count - before);
   slice.loose = static_cast<std::int64_t>(loose_.count);
@@ -50,15 +47,16 @@ void SliceEncoder::encode(LaneMasks& masks) {
   std::copy_n(loose_.id.data(), loose_.count, entries_.id.data() + entries_.count);
   std::copy_n(loose_.mask.data(), loose_.count, entries_.mask.data() + entries_.count);
   entries_.count += loose_.count;
+  slice_begin_ = entries_.count;
+  loose_.count = 0;
 }
 
 // Lane l pairing with b is lane l of a contiguous slot whose lane 0 is at b - l. So the mask of the slot at f
 // has its bit l from the byte of particle f + l: a diagonal of the bit matrix, taken for 32 values of f at
 // once.
-void SliceEncoder::encode_run(LaneMasks& masks, std::int64_t begin, std::int64_t end) {
+void SliceEncoder::encode_masks(std::uint8_t* data, std::int64_t begin, std::int64_t end) {
   constexpr std::int64_t chunk = sizeof(Bytes32);
   entries_.reserve(static_cast<std::size_t>(end - begin) + lanes);
-  const std::uint8_t* data = masks.data();
   const std::size_t before = entries_.count;
   const auto within = [](std::int64_t bytes) {  // bits of a chunk that belong to the run
     return bytes >= chunk ? ~std::uint32_t{0} : (std::uint32_t{1} << bytes) - 1;
@@ -79,10 +77,11 @@ void SliceEncoder::encode_run(LaneMasks& masks, std::int64_t begin, std::int64_t
       complete = complete && addressable;
     }
   }
-  if (complete) return;
+  const auto clear = [&] { std::memset(data + begin, 0, static_cast<std::size_t>(end - begin)); };
+  if (complete) return clear();
 
   for (std::size_t i = before; i < entries_.count; ++i) {
-    std::uint8_t* at = &masks[entries_.id[i]];
+    std::uint8_t* at = data + entries_.id[i];
     const std::uint64_t word = load_word(at) & ~diagonal(entries_.mask[i]);
     std::memcpy(at, &word, sizeof word);
   }
@@ -92,6 +91,31 @@ void SliceEncoder::encode_run(LaneMasks& masks, std::int64_t begin, std::int64_t
       const int place = std::countr_zero(left);
       loose_.put(b + place, data[b + place], true);
     }
+  clear();
+}
+
+void SliceEncoder::encode_diagonals(const std::uint8_t* masks, std::int64_t begin, std::int64_t end) {
+  if (begin >= end) return;
+  const auto most = static_cast<std::size_t>(end - begin) + lanes;
+  entries_.reserve(most);
+  loose_.reserve(most);
+  Entries::Writer slots(entries_), loose(loose_);
+  bool complete = true;
+  for (std::int64_t f = begin; f < end; ++f) {
+    const bool worthwhile = mask_tables.count[masks[f]] >= worthwhile_lanes;
+    slots.put(f, masks[f], worthwhile);
+    complete &= worthwhile || masks[f] == 0;
+  }
+  if (complete) return;
+
+  std::uint64_t pending = 0;  // byte i: lanes that pair with particle f + i but belong to no slot
+  for (std::int64_t f = begin; f < end; ++f) {
+    const bool worthwhile = mask_tables.count[masks[f]] >= worthwhile_lanes;
+    pending |= diagonal(worthwhile ? 0 : masks[f]);
+    loose.put(f, pending & 0xff, (pending & 0xff) != 0);
+    pending >>= 8;
+  }
+  for (std::int64_t b = end; pending; ++b, pending >>= 8) loose.put(b, pending & 0xff, (pending & 0xff) != 0);
 }
 
 EncodedSlices SliceEncoder::take() {
@@ -99,7 +123,7 @@ EncodedSlices SliceEncoder::take() {
   result.id.assign(entries_.id.data(), entries_.id.data() + entries_.count);
   result.mask.assign(entries_.mask.data(), entries_.mask.data() + entries_.count);
   sums_ = {};
-  entries_.count = 0;
+  entries_.count = slice_begin_ = 0;
   return result;
 }
 

@@ -28,8 +28,13 @@ class SliceEncoder {
   explicit SliceEncoder(Index particles)
       : padded_(static_cast<std::int64_t>(padded(static_cast<std::size_t>(particles)))) {}
 
-  // Appends the next slice and clears the masks.
-  void encode(LaneMasks& masks);
+  // Slots of the next slice, in any number of parts that come in ascending order of the particles with a
+  // slice between them at least; `end_slice` ends it. From a byte for each particle b in [begin, end), the
+  // lanes that pair with it; they are cleared. Up to LaneMasks::margin bytes around them are read.
+  void encode_masks(std::uint8_t* masks, std::int64_t begin, std::int64_t end);
+  // From a byte for each contiguous slot whose lane 0 pairs with f in [begin, end). All can be addressed.
+  void encode_diagonals(const std::uint8_t* masks, std::int64_t begin, std::int64_t end);
+  void end_slice();
   // All since the last take.
   EncodedSlices take();
   std::int64_t slots() const { return sums_.slots; }
@@ -50,11 +55,26 @@ class SliceEncoder {
       mask[count] = static_cast<std::uint8_t>(m);
       count += keep;
     }
+    // Puts entries for which there is room, itself in registers: the bytes that it stores could else be any
+    // of an Entries' own.
+    struct Writer {
+      explicit Writer(Entries& e) : entries(e), id(e.id.data()), mask(e.mask.data()), count(e.count) {}
+      ~Writer() { entries.count = count; }
+      void put(std::int64_t i, std::uint64_t m, bool keep) {
+        id[count] = static_cast<Index>(i);
+        mask[count] = static_cast<std::uint8_t>(m);
+        count += keep;
+      }
+      Entries& entries;
+      Index* id;
+      std::uint8_t* mask;
+      std::size_t count;
+    };
   };
-  void encode_run(LaneMasks& masks, std::int64_t begin, std::int64_t end);
 
   std::int64_t padded_;
   Entries entries_, loose_;
+  std::size_t slice_begin_ = 0;  // in entries_
   EncodedSlices sums_;
 };
 

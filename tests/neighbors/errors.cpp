@@ -74,6 +74,21 @@ TEST_CASE("coincident particles are both named, the first of them where there ar
   }
 }
 
+TEST_CASE("coincident particles of different rows are named") {
+  for (const SearchMethod method : methods) {
+    auto p = lattice<2>({100, 40});
+    p.x[1][1250] = 13;  // onto the particle above
+    for (const bool graded : {false, true}) {
+      const std::vector<double> radii(4000, 2.1);
+      CHECK(contains(message_of([&] {
+                       graded ? find_pairs(p.view(), std::span<const double>(radii), {method})
+                              : find_pairs(p.view(), 2.1, {method});
+                     }),
+                     "particles 1250 and 1350 coincide at (50, 13)"));
+    }
+  }
+}
+
 TEST_CASE("particles nearer than 1e-12 radii coincide, others do not") {
   for (const SearchMethod method : methods) {
     Points<1> p;

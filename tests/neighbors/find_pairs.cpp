@@ -138,6 +138,25 @@ TEST_CASE_TEMPLATE_DEFINE("pairs with a radius a particle", Dimension, graded_pa
 TEST_CASE_TEMPLATE_INVOKE(graded_pairs, std::integral_constant<int, 1>, std::integral_constant<int, 2>,
                           std::integral_constant<int, 3>);
 
+TEST_CASE("rows are tested slot by slot, with the same result") {
+  // Rows longer than a slice and its neighbours, whose ends lie within slices.
+  for (const double jitter : {0.0, 0.2, 0.45}) {
+    const auto block = lattice<3>({43, 6, 6}, jitter);
+    for (const double radius : {1.2, 2.1, 3.0}) check_against_brute_force(block, radius);
+    std::vector<double> radii;
+    for (const double x : block.x[0]) radii.push_back(1.2 + 0.04 * x);
+    check_against_brute_force(block, radii);
+  }
+  check_against_brute_force(lattice<2>({61, 20}, 0.3), 2.6);
+  // Rows that close in on each other without losing their order, so that no two are alike.
+  auto fan = lattice<2>({64, 20});
+  for (std::size_t i = 0; i < fan.x[0].size(); ++i) {
+    fan.x[0][i] *= 0.3 + 0.05 * fan.x[1][i];
+    fan.x[1][i] *= 0.2 + 0.01 * fan.x[0][i];
+  }
+  check_against_brute_force(fan, 1.3);
+}
+
 TEST_CASE("memory follows the particles and pairs, not the extent") {
   auto p = random_cloud<3>(2000);
   const std::size_t compact = find_pairs(p.view(), 0.1).bytes();
