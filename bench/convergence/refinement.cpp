@@ -20,10 +20,6 @@ HtmlCell number(std::optional<double> value, const char* format) {
 
 }  // namespace
 
-double order_between(double coarse_h, double coarse_error, double fine_h, double fine_error) {
-  return std::log(coarse_error / fine_error) / std::log(coarse_h / fine_h);
-}
-
 std::optional<double> mean_of(const std::vector<std::optional<double>>& values) {
   double sum = 0;
   for (const auto& value : values) {

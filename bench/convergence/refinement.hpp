@@ -3,14 +3,12 @@
 /// Errors under refinement: orders, tables, charts.
 
 #include <convergence/study.hpp>
+#include <lib/extrapolation.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace taut::bench {
-
-/// The exponent p of error ~ h^p between two spacings.
-double order_between(double coarse_h, double coarse_error, double fine_h, double fine_error);
 
 /// The mean of what is there; nothing when anything is missing.
 std::optional<double> mean_of(const std::vector<std::optional<double>>& values);

@@ -4,9 +4,9 @@
 
 #include <filesystem>
 #include <lib/chart.hpp>
-#include <lib/html.hpp>
 #include <lib/options.hpp>
 #include <lib/results.hpp>
+#include <lib/text_table.hpp>
 #include <string>
 #include <vector>
 
@@ -16,15 +16,6 @@ struct StudyOptions {
   CommonOptions common;
   std::filesystem::path scenes;  ///< folder of the scene files that studies start from
 };
-
-/// A table for the terminal and the report. Cells of kind "number" stand to the right.
-struct TextTable {
-  std::string title, note;
-  std::vector<std::string> header;
-  std::vector<std::vector<HtmlCell>> rows;
-};
-/// In plain text, columns lined up.
-std::string plain(const TextTable& table);
 
 /// What a study found.
 struct Section {

@@ -1,5 +1,5 @@
 #include <algorithm>
-#include <convergence/study.hpp>
+#include <lib/text_table.hpp>
 
 namespace taut::bench {
 namespace {
