@@ -120,6 +120,18 @@ void write_runs(HtmlPage& page, const SceneReport& part) {
       "quiet");
 }
 
+/// Why runs with formulation = "auto" are as they are.
+void write_automatic(HtmlPage& page, const SceneReport& part) {
+  for (const RunSpec& run : part.scene->runs) {
+    if (run.automatic.empty()) continue;
+    std::vector<Cells> rows;
+    for (const FiredRule& rule : run.automatic)
+      rows.push_back({{rule.sets.empty() ? "note" : rule.sets, ""}, {rule.when, "wrap"}, {rule.why, "wide"}});
+    page.heading(3, fmt::format("How the method of the run '{}' was chosen", run.label));
+    page.table({"chosen", "because", "why"}, rows);
+  }
+}
+
 void write_broken(HtmlPage& page, const SceneReport& part) {
   std::vector<Cells> rows;
   for (const CaseResult& c : part.cases)
@@ -290,6 +302,7 @@ std::vector<std::string> write_report(const Report& report, const std::filesyste
     page.paragraph(verdict(part), "lead");
     write_pictures(page, part, out, missing);
     write_runs(page, part);
+    write_automatic(page, part);
     write_charts(page, part, out, missing);
     write_broken(page, part);
     for (const ProbeSpec& probe : part.scene->probes) write_values(page, part, probe);

@@ -133,9 +133,16 @@ struct ProbeSpec {
   std::string signal_unit() const;  ///< of what is sampled
 };
 
+/// What a rule of formulation = "auto" did; see auto_rules.hpp.
+struct FiredRule {
+  std::string sets;  ///< "operators = compatible"; empty: a remark
+  std::string when, why;
+};
+
 struct RunSpec {
   std::string label;
   Method method;
+  std::vector<FiredRule> automatic;  ///< how the method was chosen; empty unless formulation is "auto"
   LatticeSpec lattice;
   std::string material;  ///< model; empty: the scene's
   std::optional<Plane> plane;
@@ -158,7 +165,9 @@ struct Scene {
   int dimension = 2;
   double accuracy = 0.01;  ///< wanted relative error
   ShapeSpec geometry;
+  LatticeSpec lattice;  ///< of runs that give no other; unused for a cloud from a file
   MaterialSpec material;
+  SolveSpec solve;  ///< likewise
   std::vector<RegionSpec> regions;
   std::vector<BoundarySpec> boundaries;
   std::vector<InitialSpec> initial;

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <lib/auto_rules.hpp>
 #include <lib/scene_keys.hpp>
 #include <lib/scene_loader.hpp>
 #include <lib/scene_parts.hpp>
+#include <set>
 
 namespace taut::bench {
 namespace {
@@ -70,6 +72,7 @@ void apply_quick(const Node& node, Scene& scene, bool quick) {
     if (swept != changed.sweep.end()) {
       swept->second = values;
     } else if (key == "dx" && values.size() == 1) {
+      changed.lattice.dx = values[0];
       for (RunSpec& run : changed.runs) run.lattice.dx = values[0];
     } else {
       reader.fail_at(key, "is not swept by [sweep]" + std::string(key == "dx" ? "; give one number" : ""));
@@ -82,11 +85,27 @@ void apply_quick(const Node& node, Scene& scene, bool quick) {
       return std::find(labels.begin(), labels.end(), run.label) == labels.end();
     });
   }
-  for (RunSpec& run : changed.runs) {
-    if (reader.has("duration")) run.solve.duration = reader.number("duration", Range::positive());
-    if (reader.has("tolerance")) run.solve.tolerance = reader.number("tolerance", Range{0, 1, true, true});
-  }
+  const auto shorten = [&](SolveSpec& solve) {
+    if (reader.has("duration")) solve.duration = reader.number("duration", Range::positive());
+    if (reader.has("tolerance")) solve.tolerance = reader.number("tolerance", Range{0, 1, true, true});
+  };
+  shorten(changed.solve);
+  for (RunSpec& run : changed.runs) shorten(run.solve);
   if (quick) scene = std::move(changed);  // read even when not asked for, so that its mistakes show
+}
+
+/// After the sweep is known, and before anything asks for a run's formulation.
+void choose_methods(const TableReader& top, Scene& scene) {
+  const NodeArray& nodes = top.tables("run");
+  for (std::size_t i = 0; i < scene.runs.size(); ++i) {
+    RunSpec& run = scene.runs[i];
+    if (run.method.formulation != "auto") continue;
+    const TableReader reader(nodes[i], "run", keys_of("run"));
+    std::set<std::string> given;
+    for (const AutoRule& rule : auto_rules())
+      if (rule.key != std::string("formulation") && reader.has(rule.key)) given.insert(rule.key);
+    run.automatic = apply_auto_rules(facts_of(scene, run), given, run.method);
+  }
 }
 
 void check_probes(const Scene& scene) {
@@ -121,8 +140,7 @@ Scene build_scene(const Node& root, const std::string& name, const std::filesyst
   scene.geometry = read_shape(top.require("geometry"), context);
   const bool cloud = scene.geometry.type == "csv";
   if (cloud && top.has("lattice")) top.fail_at("lattice", "a cloud from a CSV file has no lattice");
-  std::optional<LatticeSpec> lattice;
-  if (!cloud) lattice = read_lattice(top.require("lattice"));
+  if (!cloud) scene.lattice = read_lattice(top.require("lattice"));
   scene.material = read_material(top.require("material"));
   if (top.has("region"))
     for (const Node& node : top.tables("region"))
@@ -131,15 +149,16 @@ Scene build_scene(const Node& root, const std::string& name, const std::filesyst
     for (const Node& node : top.tables("boundary")) scene.boundaries.push_back(read_boundary(node, context));
   if (top.has("initial"))
     for (const Node& node : top.tables("initial")) scene.initial.push_back(read_initial(node, context));
-  const SolveSpec solve = read_solve(top.require("solve"), nullptr);
+  scene.solve = read_solve(top.require("solve"), nullptr);
   for (const Node& node : top.tables("probe")) scene.probes.push_back(read_probe(node, context));
   for (const Node& node : top.tables("run")) {
-    scene.runs.push_back(read_run(node, lattice ? &*lattice : nullptr, solve));
+    scene.runs.push_back(read_run(node, cloud ? nullptr : &scene.lattice, scene.solve));
     for (std::size_t i = 0; i + 1 < scene.runs.size(); ++i)
       if (scene.runs[i].label == scene.runs.back().label)
         fail(node.place, fmt::format("[run] label: '{}' is used twice", scene.runs[i].label));
   }
   read_sweep(top, scene);
+  choose_methods(top, scene);
   for (std::size_t i = 0; i < scene.boundaries.size(); ++i) {
     const BoundarySpec& boundary = scene.boundaries[i];
     const bool swept =

@@ -9,7 +9,9 @@ namespace {
 
 Method read_method(const TableReader& reader) {
   Method m;
-  m.formulation = reader.choice("formulation", names().formulations);
+  std::vector<std::string> formulations = names().formulations;
+  formulations.insert(formulations.begin(), "auto");
+  m.formulation = reader.choice("formulation", formulations);
   m.operators = reader.choice("operators", names().operators, m.operators);
   m.kernel = reader.choice("kernel", names().kernels, m.kernel);
   // Below one spacing no lattice particle has a neighbour; beyond ten a list no longer fits any memory.
