@@ -1,7 +1,9 @@
-// taut-compare SCENE…: the same scene under each formulation it lists, beside the truth.
+// taut-compare SCENE…: the same scene under each formulation it lists, beside the truth; or, with
+// --tolerance, the cheapest of many that is near enough to it.
 
 #include <lib/compare.hpp>
 #include <lib/options.hpp>
+#include <lib/tolerance.hpp>
 
 int main(int argc, char** argv) {
   using namespace taut::bench;
@@ -11,6 +13,16 @@ int main(int argc, char** argv) {
   CompareOptions compare;
   app.add_option("scenes", compare.scenes, "Scene files (.toml)")->type_name("SCENE")->required();
   app.add_flag("--no-fields", compare.no_fields, "Leave out the .vtkhdf files");
-  return run_executable(app, "taut-compare", argc, argv,
-                        [&](const CommonOptions& common) { run_compare(common, compare); });
+  std::string tolerance;
+  const CLI::Option* wanted =
+      app.add_option(
+             "--tolerance", tolerance,
+             "Instead of the runs, find the cheapest method and spacing whose probes are all within this\n"
+             "relative error, such as 1% or 0.01: by cheap pilots, a prediction, and a verifying run.\n"
+             "Exit code 1 where none is found")
+          ->type_name("ERROR");
+  return run_executable(app, "taut-compare", argc, argv, [&](const CommonOptions& common) {
+    if (*wanted) compare.tolerance = parse_tolerance(tolerance);
+    run_compare(common, compare);
+  });
 }

@@ -140,7 +140,19 @@ std::shared_ptr<const Material<D>> build_material(const MaterialSpec& spec) {
   });
 }
 
+template <int D>
+double shortest_edge_of(const ShapeSpec& geometry) {
+  const Shape<D> shape = at_place(geometry.place, "geometry", [&] { return make_shape<D>(geometry); });
+  return (shape.max() - shape.min()).minCoeff();
+}
+
 }  // namespace
+
+double shortest_edge(const Scene& scene) {
+  if (scene.dimension == 1) return shortest_edge_of<1>(scene.geometry);
+  if (scene.dimension == 2) return shortest_edge_of<2>(scene.geometry);
+  return shortest_edge_of<3>(scene.geometry);
+}
 
 template <int D>
 Cloud<D> build_cloud(const Scene& scene, const RunSpec& run, const SweepPoint& point) {

@@ -15,4 +15,7 @@ Cloud<D> build_cloud(const Scene& scene, const RunSpec& run, const SweepPoint& p
 template <int D>
 Simulation<D> build_simulation(const Scene& scene, const RunSpec& run, const SweepPoint& point);
 
+/// Least edge of the bounding box of a body that is a shape (not a cloud from a file) [m].
+double shortest_edge(const Scene& scene);
+
 }  // namespace taut::bench

@@ -11,6 +11,7 @@
 #include <lib/reference.hpp>
 #include <lib/report.hpp>
 #include <lib/scene_loader.hpp>
+#include <lib/tolerance.hpp>
 #include <set>
 #include <tuple>
 
@@ -99,6 +100,7 @@ void run_compare(const CommonOptions& common, const CompareOptions& options) {
     if (!scene_names.insert(scene.name).second)
       fail(scene.place, "[scene] name: another scene of this job is called so: " + scene.name);
   for (const Scene& scene : scenes) check_scene(scene);
+  if (options.tolerance) return run_tolerance(common, scenes, *options.tolerance);
 
   std::size_t total = 0;
   for (const Scene& scene : scenes)
