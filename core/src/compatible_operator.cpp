@@ -6,6 +6,7 @@
 #include <taut/integrators/vector_ops.hpp>
 #include <taut/internal/compatible_operator.hpp>
 #include <taut/internal/pair_payload.hpp>
+#include <taut/internal/pair_vectors.hpp>
 
 namespace taut {
 
@@ -191,29 +192,6 @@ void check_areas(const Particles<D>& p) {
                     sum.norm() / total));
 }
 
-/// The new vectors, and what the force is summed with, in place of the old ones.
-template <int D, class Real>
-void fill_compatible(const Particles<D>& p, const ClosureSystem<D>& system, const Field& lambda,
-                     AlignedArray<Real>& vectors, AlignedArray<Real>& adjoints) {
-  AlignedArray<Real> own(vectors.size()), adjoint(vectors.size());
-#pragma omp parallel for schedule(dynamic, 512)
-  for (Index a = 0; a < p.total; ++a) {
-    const Vec<D> la = lambda.template vec<D>(a);
-    system.each_pair(a, [&](Index b, std::int64_t k, int lane, const Vec<D>& X) {
-      const Vec<D> difference = la - lambda.template vec<D>(b);
-      const Vec<D> g = system.vector(a, k, lane, X, difference),
-                   minus_g_ba = system.vector(b, k, lane, X, difference);
-      for (int d = 0; d < D; ++d) {
-        const auto at = static_cast<std::size_t>((k * D + d) * lanes + lane);
-        own[at] = static_cast<Real>(g[d]);
-        adjoint[at] = static_cast<Real>(minus_g_ba[d]);
-      }
-    });
-  }
-  vectors = std::move(own);
-  adjoints = std::move(adjoint);
-}
-
 }  // namespace
 
 template <int D>
@@ -249,10 +227,14 @@ double make_compatible(const Particles<D>& p, const PairList& pairs, const Kerne
   }
   system.update_mu(lambda);
 
-  if (op.precision == PairPrecision::single_precision)
-    fill_compatible(p, system, lambda, op.vectors_f, op.adjoint_f);
-  else
-    fill_compatible(p, system, lambda, op.vectors_d, op.adjoint_d);
+  store_pair_vectors(
+      p, pairs,
+      [&](Index a, Index b, std::int64_t k, int lane, const Vec<D>& X) {
+        const Vec<D> difference = lambda.template vec<D>(a) - lambda.template vec<D>(b);
+        return std::pair<Vec<D>, Vec<D>>(system.vector(a, k, lane, X, difference),
+                                         system.vector(b, k, lane, X, difference));
+      },
+      op);
   return before > negligible ? now / before : 0;
 }
 

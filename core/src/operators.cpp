@@ -8,7 +8,9 @@
 #include <taut/core/operators.hpp>
 #include <taut/internal/block_dictionary.hpp>
 #include <taut/internal/compatible_operator.hpp>
+#include <taut/internal/describe.hpp>
 #include <taut/internal/pair_passes.hpp>
+#include <taut/internal/quadratic_operator.hpp>
 #include <taut/internal/shared_vectors.hpp>
 
 namespace taut {
@@ -16,13 +18,6 @@ namespace taut {
 namespace {
 
 constexpr Index chunk_slices = 512;
-
-template <int D>
-std::string describe(const Vec<D>& X) {
-  std::string text = "(";
-  for (int d = 0; d < D; ++d) text += fmt::format("{}{:g}", d ? ", " : "", X[d]);
-  return text + ")";
-}
 
 // G_ab = w_a w_b grad W_ab for all slots; antisymmetric to the last bit, because every factor is.
 template <int D, class Real>
@@ -40,6 +35,26 @@ void fill_vectors(const Particles<D>& p, const PairList& pairs, const Kernel& ke
         for (int d = 0; d < D; ++d)
           out[static_cast<std::size_t>((k * D + d) * lanes + lane)] = static_cast<Real>(slope * rab[d]);
       });
+}
+
+// The vectors along the kernel's gradient in the precision of `op`, or what they are shared or recomputed
+// from.
+template <int D>
+void fill_radial_vectors(const Particles<D>& p, const PairList& pairs, const Kernel& kernel, double h,
+                         PairOperator<D>& op) {
+  switch (op.precision) {
+    case PairPrecision::double_precision:
+      fill_vectors(p, pairs, kernel, h, op, op.vectors_d);
+      break;
+    case PairPrecision::shared:
+      share_vectors<D>(p, pairs, kernel, h, op);
+      break;
+    case PairPrecision::recomputed:
+      op.table = std::make_shared<const KernelTable>(kernel, h);
+      break;
+    default:
+      fill_vectors(p, pairs, kernel, h, op, op.vectors_f);
+  }
 }
 
 // The sums that a slice's matrices are made of.
@@ -173,25 +188,24 @@ void fill_matrices(bool corrected, const Particles<D>& p, const PairList& pairs,
 template <int D>
 PairPrecision resolve(const Method& method, const Particles<D>& p, const PairList& pairs, double support,
                       const Field& weights) {
-  const bool compatible = method.operators == "compatible";
+  const bool stored = method.operators == "compatible" || method.operators == "quadratic";
   if (method.pair_precision == PairPrecision::automatic) {
     // A slot that nothing is shared with costs twice the bytes of one in single precision.
     constexpr double worthwhile = 0.4;
-    return !compatible && distinct_fraction<D>(p, pairs, support, weights) < worthwhile
+    return !stored && distinct_fraction<D>(p, pairs, support, weights) < worthwhile
                ? PairPrecision::shared
                : PairPrecision::single_precision;
   }
-  if (compatible &&
+  if (stored &&
       (method.pair_precision == PairPrecision::shared || method.pair_precision == PairPrecision::recomputed))
-    throw InputError(
-        fmt::format("the pair vectors of compatible operators cannot be {}: choose single or double",
-                    to_string(method.pair_precision)));
+    throw InputError(fmt::format("the pair vectors of {} operators cannot be {}: choose single or double",
+                                 method.operators, to_string(method.pair_precision)));
   return method.pair_precision;
 }
 
 }  // namespace
 
-std::vector<std::string> operator_names() { return {"standard", "corrected", "compatible"}; }
+std::vector<std::string> operator_names() { return {"standard", "corrected", "compatible", "quadratic"}; }
 
 template <int D>
 PairOperator<D> make_operator(const Method& method, const Particles<D>& p, const PairList& pairs,
@@ -200,7 +214,6 @@ PairOperator<D> make_operator(const Method& method, const Particles<D>& p, const
   const auto names = operator_names();
   if (std::find(names.begin(), names.end(), name) == names.end())
     throw InputError(fmt::format("unknown operators \"{}\"; valid: {}", name, join_names(names)));
-  const bool compatible = name == "compatible";
   const double support = kernel.radius_factor() * h;
 
   PairOperator<D> op;
@@ -209,26 +222,17 @@ PairOperator<D> make_operator(const Method& method, const Particles<D>& p, const
   else
     op.weight_product = std::pow(p.dx, 2 * D);
   op.precision = resolve<D>(method, p, pairs, support, op.weight);
-  switch (op.precision) {
-    case PairPrecision::double_precision:
-      fill_vectors(p, pairs, kernel, h, op, op.vectors_d);
-      break;
-    case PairPrecision::shared:
-      share_vectors<D>(p, pairs, kernel, h, op);
-      break;
-    case PairPrecision::recomputed:
-      op.table = std::make_shared<const KernelTable>(kernel, h);
-      break;
-    default:
-      fill_vectors(p, pairs, kernel, h, op, op.vectors_f);
-  }
+  if (name == "quadratic")
+    make_quadratic(p, pairs, kernel, h, op);
+  else
+    fill_radial_vectors(p, pairs, kernel, h, op);
   const auto make_matrices = [&] {
     with_payload<D>(op, pairs, p.X, [&](const auto& payload) {
       fill_matrices<D>(name != "standard", p, pairs, payload, op);
     });
   };
   make_matrices();
-  if (compatible) {
+  if (name == "compatible") {
     make_compatible(p, pairs, kernel, h, method.compatible_iterations, op);
     make_matrices();  // linear exactness of the vectors as stored
   }

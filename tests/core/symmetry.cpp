@@ -83,7 +83,7 @@ TEST_CASE_TEMPLATE("symmetry planes: the total Lagrangian part moves as the whol
                    Dim<3>) {
   constexpr int D = Dimension::value;
   for (const auto lattice : {Lattice::node_centred, Lattice::cell_centred})
-    for (const char* operators : {"corrected", "standard"})
+    for (const char* operators : {"corrected", "standard", "quadratic"})
       for (int planes = 1; planes <= D; ++planes) {
         CAPTURE(static_cast<int>(lattice));
         CAPTURE(operators);

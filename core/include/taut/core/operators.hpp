@@ -21,9 +21,9 @@ class KernelTable;
 ///   f_a = sum_b (Q_a G_ab - Q_b G_ba),     Q_a = V_a P_a M_a,
 /// where, for `standard` and `corrected`, G_ab = w_a w_b grad W_ab = -G_ba with the particles' weights w;
 /// `standard` has w = V and M_a = I / V_a, `corrected` w = dx^D and M_a below. The vectors of `compatible`
-/// are not antisymmetric, so -G_ba is stored beside G_ab. F0 is absent where linear fields are exact; for
-/// `standard` it makes F = I + grad u, so that the body is free of stress at rest. The force is the exact
-/// adjoint of the gradient, so linear momentum is kept to round-off.
+/// and `quadratic` are not antisymmetric, so -G_ba is stored beside G_ab. F0 is absent where linear fields
+/// are exact; for `standard` it makes F = I + grad u, so that the body is free of stress at rest. The force
+/// is the exact adjoint of the gradient, so linear momentum is kept to round-off.
 template <int D>
 struct PairOperator {
   PairPrecision precision = PairPrecision::single_precision;  ///< never `automatic`
@@ -79,9 +79,13 @@ struct PairOperator {
 /// constant stress so makes the forces of its tractions on the faces and none inside, to round-off; with
 /// volumes as weights a held face carries 3/2 of the stress that it should. `compatible`: the least change of
 /// those vectors that also closes: see taut/internal/compatible_operator.hpp. Needs boundary area vectors;
-/// its vectors are stored, in single precision when the method says `automatic`. \throws InputError for an
-/// unknown name (valid ones listed), missing areas, compatible vectors that are to be shared or recomputed,
-/// or a particle whose matrix is singular: its id, its position, how many neighbours it has, and what to do.
+/// its vectors are stored, in single precision when the method says `automatic`. `quadratic`: moving least
+/// squares, gradients of quadratic fields exact at every particle (to the precision of the vectors, linear
+/// fields to round-off); see taut/internal/quadratic_operator.hpp. Stored likewise; needs about R = 2.1 dx
+/// and does not close, so that a constant stress makes forces next to faces and wherever the cloud is
+/// irregular. \throws InputError for an unknown name (valid ones listed), missing areas, compatible or
+/// quadratic vectors that are to be shared or recomputed, or a particle whose matrix is singular: its id, its
+/// position, how many neighbours it has, and what to do.
 template <int D>
 PairOperator<D> make_operator(const Method& method, const Particles<D>& particles, const PairList& pairs,
                               const Kernel& kernel, double smoothing_length);
