@@ -18,6 +18,10 @@ namespace {
 /// neighbours hardly weigh, leaves 1e-5.
 constexpr double least_pivot = 1e-10;
 
+/// Largest sum_b |X_ab| |G_ab| / V_a: a lattice has less than 10, while neighbours that hardly determine a
+/// quadratic get huge vectors of either sign, which no motion is followed with.
+constexpr double largest_sum = 100;
+
 template <int D>
 class QuadraticFit {
  public:
@@ -69,7 +73,7 @@ class QuadraticFit {
   }
   double weight(const Vec<D>& X) const { return kernel_.value(X.norm(), h_) / top_; }
 
-  /// False where the neighbours of a do not determine a quadratic.
+  /// False where the neighbours of a do not determine a quadratic, or hardly.
   bool fit(Index a, const PairList& pairs) {
     Eigen::Matrix<double, terms, terms> normal = Eigen::Matrix<double, terms, terms>::Zero();
     const Vec<D> Xa = p_.X.template vec<D>(a);
@@ -87,9 +91,14 @@ class QuadraticFit {
     const Columns unit = Columns::Identity();
     Columns columns = factors.solve(unit);
     columns += factors.solve(unit - normal * columns);  // what a pivot of 1e-5 costs in digits
-    coefficients_[static_cast<std::size_t>(a)] =
-        (scale.asDiagonal() * columns * scale.template head<D>().asDiagonal()).transpose() / p_.dx;
-    return true;
+    auto& C = coefficients_[static_cast<std::size_t>(a)];
+    C = (scale.asDiagonal() * columns * scale.template head<D>().asDiagonal()).transpose() / p_.dx;
+    double sum = 0;
+    pairs.for_each(a, [&](Index b, std::int64_t, int) {
+      const Vec<D> X = p_.X.template vec<D>(b) - Xa;
+      sum += weight(X) * X.norm() * (C * monomials(X)).norm();
+    });
+    return sum < largest_sum;
   }
 
   [[noreturn]] void throw_singular(Index a, const PairList& pairs) const {

@@ -73,7 +73,7 @@ TEST_CASE_TEMPLATE("quadratic operators: gradients of quadratics are exact, on t
 TEST_CASE_TEMPLATE("quadratic operators: linear fields are exact in single precision as well", Dimension,
                    Dim<1>, Dim<2>, Dim<3>) {
   constexpr int D = Dimension::value;
-  const Discretised<D> body(brick<D>(spacings<D>(), 0.15), quadratic(2.1, PairPrecision::single_precision));
+  const Discretised<D> body(brick<D>(spacings<D>(), 0.15), quadratic(2.4, PairPrecision::single_precision));
   const Vec<D> slope = Vec<D>::LinSpaced(0.5, 1.7);
   double largest = 0;
   for (Index a = 0; a < body.particles.n; ++a)
@@ -171,6 +171,19 @@ TEST_CASE_TEMPLATE("quadratic operators: particles whose neighbours are too few 
   lonely.B.push_back(Vec<D>::Zero());
   const std::string expected = "the 0 neighbour(s) of particle " + std::to_string(cloud.size()) + " at (9, 9";
   CHECK_THROWS_WITH_AS(Discretised<D>(lonely, quadratic()), doctest::Contains(expected.c_str()), InputError);
+}
+
+TEST_CASE("quadratic operators: neighbours that hardly determine a quadratic count as too few") {
+  Cloud<1> cloud;
+  cloud.dx = 1;
+  for (const double x : {0.0, 1.0, 1.001, 2.0, 3.0, 4.0}) cloud.X.emplace_back(x);
+  cloud.V.assign(cloud.X.size(), 1.0);
+  // From 0 only 1 and 1.001 are within reach: weights of a thousand either way.
+  CHECK_THROWS_WITH_AS(Discretised<1>(cloud, quadratic(1.6)),
+                       doctest::Contains("the 2 neighbour(s) of particle 0 at (0) do not determine"),
+                       InputError);
+  cloud.X[2][0] = 1.5;
+  CHECK(error_of_quadratic(Discretised<1>(cloud, quadratic(2.1))) < 1e-12);
 }
 
 TEST_CASE("quadratic operators refuse vectors that are shared or recomputed, and stand in the list") {

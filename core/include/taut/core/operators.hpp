@@ -82,10 +82,10 @@ struct PairOperator {
 /// its vectors are stored, in single precision when the method says `automatic`. `quadratic`: moving least
 /// squares, gradients of quadratic fields exact at every particle (to the precision of the vectors, linear
 /// fields to round-off); see taut/internal/quadratic_operator.hpp. Stored likewise; needs about R = 2.1 dx
-/// and does not close, so that a constant stress makes forces next to faces and wherever the cloud is
-/// irregular. \throws InputError for an unknown name (valid ones listed), missing areas, compatible or
-/// quadratic vectors that are to be shared or recomputed, or a particle whose matrix is singular: its id, its
-/// position, how many neighbours it has, and what to do.
+/// on a lattice, 2.4 dx where it is jittered, and does not close, so that a constant stress makes forces next
+/// to faces and wherever the cloud is irregular. \throws InputError for an unknown name (valid ones listed),
+/// missing areas, compatible or quadratic vectors that are to be shared or recomputed, or a particle whose
+/// matrix is singular: its id, its position, how many neighbours it has, and what to do.
 template <int D>
 PairOperator<D> make_operator(const Method& method, const Particles<D>& particles, const PairList& pairs,
                               const Kernel& kernel, double smoothing_length);
