@@ -1,44 +1,28 @@
 // taut-scaling as a program: its options, its files.
 #include <doctest/doctest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <lib/files.hpp>
 #include <lib/results.hpp>
+#include <program.hpp>
 #include <scaling/row_query.hpp>
 #include <string>
 
 using namespace taut::bench;
+using namespace taut::test;
 
 namespace {
 
 namespace fs = std::filesystem;
 
-fs::path folder() {
-  static const fs::path path = [] {
-    fs::path p = fs::temp_directory_path() / ("taut-test-scaling-" + std::to_string(getpid()));
-    fs::remove_all(p);
-    fs::create_directories(p);
-    return p;
-  }();
+const fs::path& folder() {
+  static const fs::path path = fresh_folder("scaling");
   return path;
 }
 
-struct Outcome {
-  int status;
-  std::string out, err;
-};
-
-Outcome scaling(const std::string& arguments) {
-  const std::string command =
-      "cd '" + folder().string() + "' && '" TAUT_SCALING "' " + arguments + " >out.txt 2>err.txt";
-  const int status = std::system(command.c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(folder() / "out.txt"),
-          read_file(folder() / "err.txt")};
-}
+Outcome scaling(const std::string& arguments) { return run_program(TAUT_SCALING, arguments, folder()); }
 
 bool has(const std::vector<Row>& rows, const std::string& formulation, const std::string& quantity) {
   return std::any_of(rows.begin(), rows.end(), [&](const Row& r) {

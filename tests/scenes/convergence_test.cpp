@@ -1,7 +1,6 @@
 // What taut-convergence stands on: its exact solutions, its finite elements, its orders; and the executable
 // itself.
 #include <doctest/doctest.h>
-#include <sys/wait.h>
 
 #include <Eigen/Eigenvalues>
 #include <convergence/bent_bar.hpp>
@@ -10,12 +9,11 @@
 #include <convergence/kirsch.hpp>
 #include <convergence/pareto.hpp>
 #include <convergence/refinement.hpp>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
+#include <lib/files.hpp>
 #include <lib/results.hpp>
 #include <numbers>
-#include <sstream>
+#include <program.hpp>
 #include <taut/core/error.hpp>
 
 using namespace taut;
@@ -61,24 +59,7 @@ struct Block {
 };
 
 int run(const std::string& arguments, const fs::path& folder) {
-  const std::string command =
-      "cd '" + folder.string() + "' && '" TAUT_CONVERGENCE "' " + arguments + " >out.txt 2>err.txt";
-  const int status = std::system(command.c_str());
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
-
-std::string content(const fs::path& file) {
-  std::ifstream in(file);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
-fs::path fresh_folder() {
-  const fs::path path = fs::temp_directory_path() / ("taut-test-convergence-" + std::to_string(getpid()));
-  fs::remove_all(path);
-  fs::create_directories(path);
-  return path;
+  return test::run_program(TAUT_CONVERGENCE, arguments, folder).status;
 }
 
 }  // namespace
@@ -250,36 +231,36 @@ TEST_CASE("orders, means, order tables and the Pareto front") {
 }
 
 TEST_CASE("taut-convergence: bad input ends with exit code 2 and no files") {
-  const fs::path folder = fresh_folder();
+  const fs::path folder = test::fresh_folder("convergence");
   CHECK(run("--wrong", folder) == 2);
   CHECK(run("--threads 0", folder) == 2);
   CHECK(run("nothing --out result", folder) == 2);
-  CHECK(content(folder / "err.txt").find("unknown study \"nothing\"; valid: cube, cantilever, sheet") !=
+  CHECK(read_file(folder / "err.txt").find("unknown study \"nothing\"; valid: cube, cantilever, sheet") !=
         std::string::npos);
   CHECK(run("--quick --scenes nowhere --out result", folder) == 2);
-  CHECK(content(folder / "err.txt").find("nowhere/cantilever_convergence.toml: cannot open") !=
+  CHECK(read_file(folder / "err.txt").find("nowhere/cantilever_convergence.toml: cannot open") !=
         std::string::npos);
   CHECK(!fs::exists(folder / "result"));
   CHECK(run("--version", folder) == 0);
-  CHECK(content(folder / "out.txt").starts_with("taut-convergence "));
+  CHECK(read_file(folder / "out.txt").starts_with("taut-convergence "));
   CHECK(run("--help", folder) == 0);
-  CHECK(content(folder / "out.txt").find("frontier") != std::string::npos);
+  CHECK(read_file(folder / "out.txt").find("frontier") != std::string::npos);
 }
 
 TEST_CASE("taut-convergence: a study writes the contract's columns, tables and a report") {
-  const fs::path folder = fresh_folder();
+  const fs::path folder = test::fresh_folder("convergence");
   REQUIRE(run("sheet --quick --threads 1 --out result", folder) == 0);
-  const std::string csv = content(folder / "result/results.csv");
+  const std::string csv = read_file(folder / "result/results.csv");
   CHECK(
       csv.starts_with(results_header() +
                       "\nsheet_with_hole_lattice,tl_displacement,standard,linear_elastic,wendland_c2,1.5,"));
   CHECK(csv.find(",peak_stress_factor,") != std::string::npos);
   CHECK(csv.find(",order_stress,") != std::string::npos);
-  CHECK(content(folder / "out.txt").find("order a/4–a/8") != std::string::npos);
-  const std::string report = content(folder / "result/report.html");
+  CHECK(read_file(folder / "out.txt").find("order a/4–a/8") != std::string::npos);
+  const std::string report = read_file(folder / "result/report.html");
   CHECK(report.starts_with("<!doctype html>"));
   CHECK(report.find("http") == std::string::npos);
   CHECK(fs::exists(folder / "result/charts/sheet_with_hole_stress_fitted.csv"));
   REQUIRE(run("sheet --quick --quiet --threads 1 --out quiet", folder) == 0);
-  CHECK(content(folder / "out.txt").empty());
+  CHECK(read_file(folder / "out.txt").empty());
 }

@@ -1,54 +1,39 @@
 #include <doctest/doctest.h>
-#include <sys/wait.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <lib/files.hpp>
+#include <program.hpp>
 #include <scenes/malformed.hpp>
 #include <sstream>
 #include <taut/core/simulation.hpp>
+
+using taut::bench::read_file;
+using taut::test::fresh_folder;
+using taut::test::Outcome;
+using taut::test::run_program;
 
 namespace {
 
 namespace fs = std::filesystem;
 
-struct Outcome {
-  int status;
-  std::string out, err;
-};
-
-fs::path folder() {
-  static const fs::path path = [] {
-    fs::path p = fs::temp_directory_path() / ("taut-test-compare-" + std::to_string(getpid()));
-    fs::remove_all(p);
-    fs::create_directories(p);
-    return p;
-  }();
+const fs::path& folder() {
+  static const fs::path path = fresh_folder("compare");
   return path;
-}
-
-std::string content(const fs::path& file) {
-  std::ifstream in(file);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
 }
 
 /// Runs taut-compare in the test's folder.
 Outcome compare(const std::string& arguments, const std::string& environment = "") {
-  const std::string command = "cd '" + folder().string() + "' && " + environment + " '" TAUT_COMPARE "' " +
-                              arguments + " >out.txt 2>err.txt";
-  const int status = std::system(command.c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(folder() / "out.txt"),
-          content(folder() / "err.txt")};
+  return run_program(TAUT_COMPARE, arguments, folder(), environment);
 }
 
 void write(const std::string& name, const std::string& text) { std::ofstream(folder() / name) << text; }
 
 std::vector<std::string> lines_of(const fs::path& file) {
   std::vector<std::string> lines;
-  std::istringstream in(content(file));
+  std::istringstream in(read_file(file));
   for (std::string line; std::getline(in, line);) lines.push_back(line);
   return lines;
 }
@@ -116,7 +101,7 @@ TEST_CASE("a run writes everything it promises") {
   CHECK(rows[1].find(",tip_ux,0.001") !=
         std::string::npos);  // 1000 N / (E H) L = 2 mm, less the clamp's constraint
   CHECK(rows[1].find(",m,ok,") != std::string::npos);
-  const std::string report = content(folder() / "result/report.html");
+  const std::string report = read_file(folder() / "result/report.html");
   CHECK(report.starts_with("<!doctype html>"));
   CHECK(report.find("tip_ux") != std::string::npos);
   // Self-contained: nothing is loaded from elsewhere.
@@ -155,11 +140,11 @@ title = "Pulled"
   for (const char* chart : {"small_tip_ux", "small_tip_ux_known", "small_tip_ux_known_error",
                             "small_tip_ux_known_dx_load_1000_n", "small_cost"}) {
     CAPTURE(chart);
-    CHECK(content(folder() / "drawn/charts" / (std::string(chart) + ".svg")).find("</svg>") !=
+    CHECK(read_file(folder() / "drawn/charts" / (std::string(chart) + ".svg")).find("</svg>") !=
           std::string::npos);
   }
   CHECK(fs::file_size(folder() / "drawn/pictures/small.png") > 1000);
-  CHECK(content(folder() / "drawn/report.html").find("data:image/svg+xml;base64,") != std::string::npos);
+  CHECK(read_file(folder() / "drawn/report.html").find("data:image/svg+xml;base64,") != std::string::npos);
 }
 
 TEST_CASE("without gnuplot the numbers are there, and a note") {
@@ -168,7 +153,7 @@ TEST_CASE("without gnuplot the numbers are there, and a note") {
   const Outcome outcome = compare("sweep.toml --out bare --no-fields", "TAUT_GNUPLOT=");
   REQUIRE(outcome.status == 0);
   CHECK(outcome.out.find("gnuplot was not found") != std::string::npos);
-  CHECK(content(folder() / "bare/report.html").find("gnuplot was not found") != std::string::npos);
+  CHECK(read_file(folder() / "bare/report.html").find("gnuplot was not found") != std::string::npos);
   CHECK(fs::exists(folder() / "bare/charts/small_tip_ux.csv"));
   CHECK(!fs::exists(folder() / "bare/fields"));
 }
@@ -200,7 +185,7 @@ formulation = "tl_displacement"
   CHECK(rows[3].find(",ok,") != std::string::npos);
   CHECK(outcome.out.find("breaks: BROKE at t = ") != std::string::npos);
   CHECK(outcome.out.find("particle") != std::string::npos);
-  const std::string report = content(folder() / "broken/report.html");
+  const std::string report = read_file(folder() / "broken/report.html");
   CHECK(report.find("Which broke, and when") != std::string::npos);
 }
 

@@ -1,21 +1,19 @@
 // taut-compare --tolerance: its numbers, its choice, its job.
 
 #include <doctest/doctest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <lib/candidates.hpp>
 #include <lib/extrapolation.hpp>
+#include <lib/files.hpp>
 #include <lib/results.hpp>
 #include <lib/scene_loader.hpp>
 #include <lib/tolerance.hpp>
+#include <program.hpp>
 #include <scenes/malformed.hpp>
-#include <sstream>
 
 using namespace taut;
 using namespace taut::bench;
@@ -24,34 +22,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Outcome {
-  int status;
-  std::string out, err;
-};
-
-std::string content(const fs::path& file) {
-  std::ifstream in(file);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
 /// A folder for one test, gone when it ends.
 struct Folder {
   fs::path path;
-  explicit Folder(const std::string& name)
-      : path(fs::temp_directory_path() / ("taut-tolerance-" + name + std::to_string(getpid()))) {
-    fs::create_directories(path);
-  }
+  explicit Folder(const std::string& name) : path(test::fresh_folder("tolerance-" + name)) {}
   ~Folder() { fs::remove_all(path); }
   Folder(const Folder&) = delete;
   Folder& operator=(const Folder&) = delete;
   void write(const std::string& name, const std::string& text) const { std::ofstream(path / name) << text; }
-  Outcome compare(const std::string& arguments) const {
-    const int status = std::system(
-        ("cd '" + path.string() + "' && '" TAUT_COMPARE "' " + arguments + " >out.txt 2>err.txt").c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(path / "out.txt"),
-            content(path / "err.txt")};
+  test::Outcome compare(const std::string& arguments) const {
+    return test::run_program(TAUT_COMPARE, arguments, path);
   }
 };
 
@@ -186,7 +166,7 @@ TEST_CASE("--tolerance ends bad input with exit code 2 and no files") {
   const Folder folder("bad");
   folder.write("good.toml", test::good_scene);
   for (const char* bad : {"0", "abc"}) {
-    const Outcome outcome = folder.compare(std::string("good.toml --out result --tolerance ") + bad);
+    const test::Outcome outcome = folder.compare(std::string("good.toml --out result --tolerance ") + bad);
     CHECK(outcome.status == 2);
     CHECK(outcome.err.find("valid: 1%, 0.5%, 0.01") != std::string::npos);
     CHECK(!fs::exists(folder.path / "result"));
@@ -197,7 +177,7 @@ TEST_CASE("--tolerance ends bad input with exit code 2 and no files") {
 TEST_CASE("--tolerance finds, verifies and reports a method for a body with a reference") {
   const Folder folder("known");
   folder.write("pull.toml", pull());
-  const Outcome outcome = folder.compare("pull.toml --out result --tolerance 1% --threads 1");
+  const test::Outcome outcome = folder.compare("pull.toml --out result --tolerance 1% --threads 1");
   CAPTURE(outcome.err);
   CAPTURE(outcome.out);
   REQUIRE(outcome.status == 0);
@@ -211,7 +191,7 @@ TEST_CASE("--tolerance finds, verifies and reports a method for a body with a re
   REQUIRE(chosen->error);
   CHECK(std::abs(*chosen->error) <= 0.01);
   CHECK(chosen->reference == 1e-4);
-  const std::string report = content(folder.path / "result/report.html");
+  const std::string report = read_file(folder.path / "result/report.html");
   CHECK(report.find("the cheapest that meets 1 % is ") != std::string::npos);
   CHECK(report.find("chosen") != std::string::npos);
   CHECK(fs::exists(folder.path / "result/charts/small_tolerance.csv"));
@@ -220,7 +200,7 @@ TEST_CASE("--tolerance finds, verifies and reports a method for a body with a re
 TEST_CASE("--tolerance extrapolates where there is no reference") {
   const Folder folder("unknown");
   folder.write("good.toml", test::good_scene);
-  const Outcome outcome = folder.compare("good.toml --out result --tolerance 5% --threads 1");
+  const test::Outcome outcome = folder.compare("good.toml --out result --tolerance 5% --threads 1");
   CAPTURE(outcome.err);
   CAPTURE(outcome.out);
   REQUIRE(outcome.status == 0);
@@ -236,7 +216,7 @@ TEST_CASE("--tolerance extrapolates where there is no reference") {
 TEST_CASE("--tolerance that nothing meets ends with exit code 1 and the nearest") {
   const Folder folder("missed");
   folder.write("pull.toml", replaced(pull(), "reference = 1e-4", "reference = 2e-4"));
-  const Outcome outcome = folder.compare("pull.toml --out result --tolerance 0.01 --threads 1");
+  const test::Outcome outcome = folder.compare("pull.toml --out result --tolerance 0.01 --threads 1");
   CAPTURE(outcome.out);
   CHECK(outcome.status == 1);
   CHECK(outcome.err.find("no candidate meets 1 %; nearest: ") != std::string::npos);
@@ -257,7 +237,7 @@ TEST_CASE("--tolerance refuses a cloud from a file without references") {
                replaced(test::good_scene,
                         "type = \"box\"\nmin = [0.0, 0.0]\nmax = [0.2, 0.05]\n\n[lattice]\ndx = 0.0125",
                         "type = \"csv\"\nfile = \"cloud.csv\""));
-  const Outcome outcome = folder.compare("cloud.toml --out result --tolerance 1%");
+  const test::Outcome outcome = folder.compare("cloud.toml --out result --tolerance 1%");
   CAPTURE(outcome.err);
   CHECK(outcome.status == 2);
   CHECK(outcome.err.find("has one spacing") != std::string::npos);
