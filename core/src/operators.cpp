@@ -236,6 +236,7 @@ PairOperator<D> make_operator(const Method& method, const Particles<D>& p, const
     make_compatible(p, pairs, kernel, h, method.compatible_iterations, op);
     make_matrices();  // linear exactness of the vectors as stored
   }
+  if (op.precision != PairPrecision::recomputed) op.weight = {};  // they are in the vectors
   return op;
 }
 

@@ -40,7 +40,7 @@ struct PairOperator {
   // Recomputed.
   std::shared_ptr<const KernelTable> table;
 
-  Field weight;               ///< w, one value a particle; empty where all weigh alike
+  Field weight;               ///< w, one value a particle; empty where all weigh alike or vectors are kept
   double weight_product = 1;  ///< w_a w_b where all weigh alike
   Field M;    ///< D×D components, row-major; zero beyond the bodies' particles. Empty when shared
   Field sum;  ///< D components: sum_b G_ab. Empty when shared
