@@ -15,7 +15,7 @@ CompressedPairs compressed_pairs(const Cloud<3>& cloud, const Method& method) {
 
   Field X(n, 3);
   for (std::size_t i = 0; i < n; ++i) X.set_vec<3>(i, cloud.X[i]);
-  const PointView<3> view{{X.component(0), X.component(1), X.component(2)}, static_cast<Index>(n)};
+  const PointView<3> view = points_of<3>(X, static_cast<Index>(n));
   CompressedPairs p;
   p.id = locality_order<3>(view, support);
   for (std::size_t i = 0; i < n; ++i) X.set_vec<3>(i, cloud.X[static_cast<std::size_t>(p.id[i])]);

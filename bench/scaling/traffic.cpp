@@ -24,10 +24,7 @@ Particles<D> particles_of(const Cloud<D>& cloud, const char* material, double re
 
 template <int D>
 PairList pairs_of(const Particles<D>& p, double radius) {
-  PointView<D> view;
-  for (int d = 0; d < D; ++d) view.x[static_cast<std::size_t>(d)] = p.X.component(d);
-  view.n = p.total;
-  return find_pairs<D>(view, radius);
+  return find_pairs<D>(points_of<D>(p.X, p.total), radius);
 }
 
 }  // namespace

@@ -42,10 +42,7 @@ Particles<D> assemble(const Cloud<D>& cloud, std::vector<std::shared_ptr<const M
 
   Field unordered(n, D);
   for (std::size_t i = 0; i < n; ++i) unordered.set_vec<D>(i, cloud.X[i]);
-  PointView<D> view;
-  for (int d = 0; d < D; ++d) view.x[static_cast<std::size_t>(d)] = unordered.component(d);
-  view.n = p.n;
-  p.id = locality_order<D>(view, reach);
+  p.id = locality_order<D>(points_of<D>(unordered, p.n), reach);
   p.place.resize(n);
   std::vector<Vec<D>> ordered(n);
   for (std::size_t i = 0; i < n; ++i) {

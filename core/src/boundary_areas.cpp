@@ -23,10 +23,7 @@ struct Surroundings {
   explicit Surroundings(const Cloud<D>& cloud) : X(cloud.X) {
     Field x(cloud.size(), D);
     for (std::size_t i = 0; i < cloud.size(); ++i) x.template set_vec<D>(i, cloud.X[i]);
-    PointView<D> points;
-    for (int d = 0; d < D; ++d) points.x[static_cast<std::size_t>(d)] = x.component(d);
-    points.n = static_cast<Index>(cloud.size());
-    pairs = find_pairs<D>(points, reach_dx * cloud.dx);
+    pairs = find_pairs<D>(points_of<D>(x, static_cast<Index>(cloud.size())), reach_dx * cloud.dx);
   }
   // f(b, X_b - X_a) for each neighbour b of a.
   template <class F>

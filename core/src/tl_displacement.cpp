@@ -40,8 +40,8 @@ class TlDisplacement final : public Formulation<D> {
                         material->name()));
       materials_.push_back(hyperelastic);
     }
-    const PointView<D> points{columns(p_.X), p_.total};
-    pairs_ = find_pairs<D>(points, setup.method.support_dx * p_.dx, {search_method(setup.method.neighbours)});
+    pairs_ = find_pairs<D>(points_of<D>(p_.X, p_.total), setup.method.support_dx * p_.dx,
+                           {search_method(setup.method.neighbours)});
     op_ = make_operator<D>(setup.method, p_, pairs_, kernel_, h_);
     Q_ = Field(static_cast<std::size_t>(p_.total), D * D);
     if (setup.method.zero_energy_control > 0)
@@ -90,12 +90,6 @@ class TlDisplacement final : public Formulation<D> {
   }
 
  private:
-  static std::array<const double*, D> columns(const Field& f) {
-    std::array<const double*, D> c{};
-    for (int d = 0; d < D; ++d) c[static_cast<std::size_t>(d)] = f.component(d);
-    return c;
-  }
-
   // F without F0 of slice s, outside the step's loops.
   void gradient(Index s, const Field& x, Pack (&F)[D * D]) const {
     with_payload<D>(op_, pairs_, p_.X, [&](const auto& payload) {

@@ -16,14 +16,6 @@
 
 namespace taut {
 
-template <int D>
-PointView<D> points_of(const Field& X, Index n) {
-  PointView<D> view;
-  for (int d = 0; d < D; ++d) view.x[static_cast<std::size_t>(d)] = X.component(d);
-  view.n = n;
-  return view;
-}
-
 /// Particles, pairs and one operator.
 template <int D>
 struct Discretised {

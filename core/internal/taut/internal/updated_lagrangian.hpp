@@ -70,12 +70,7 @@ class UpdatedLagrangian : public Formulation<D> {
   }
 
  protected:
-  PointView<D> points() const {
-    PointView<D> view;
-    for (int d = 0; d < D; ++d) view.x[static_cast<std::size_t>(d)] = p_.x.component(d);
-    view.n = p_.total;
-    return view;
-  }
+  PointView<D> points() const { return points_of<D>(p_.x, p_.total); }
   /// Brings the pair list up to date; false, with `failure` set, where the particles are in no state to have one.
   bool update_list();
   /// T = sigma / rho^2 of all particles, mirror images included.

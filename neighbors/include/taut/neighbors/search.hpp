@@ -5,6 +5,7 @@
 #include <array>
 #include <span>
 #include <string_view>
+#include <taut/core/fields.hpp>
 #include <taut/neighbors/pair_list.hpp>
 #include <vector>
 
@@ -16,6 +17,15 @@ struct PointView {
   std::array<const double*, D> x{};
   Index n = 0;
 };
+
+/// The first n particles of a field of positions.
+template <int D>
+PointView<D> points_of(const Field& X, Index n) {
+  PointView<D> view;
+  for (int d = 0; d < D; ++d) view.x[static_cast<std::size_t>(d)] = X.component(d);
+  view.n = n;
+  return view;
+}
 
 enum class SearchMethod { cell_list, kd_tree };
 /// "cell_list" or "kd_tree". \throws InputError naming the valid ones.
