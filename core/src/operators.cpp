@@ -75,18 +75,17 @@ void moments_of_slice(Index s, const PairList& pairs, const Payload& payload, co
   m.scale = pack(0);
   const auto vectors = payload.slice(s);
   for_slots(pairs, s, [&](std::int64_t k, auto&& at) {
-    Pack g[D], Xab[D], gg = pack(0), XX = pack(0);
-    vectors.get(k, at, g);
+    Pack Xab[D], gg = pack(0), XX = pack(0);
     const PackMask pair = lanes_of(pairs.mask(k));
     for (int d = 0; d < D; ++d) {
       Xab[d] = pair ? at(X.c[d]) - Xi[d] : pack(0);
-      gg += g[d] * g[d];
       XX += Xab[d] * Xab[d];
     }
-    for (int e = 0; e < D; ++e) {
-      for (int d = 0; d < D; ++d) m.outer[d * D + e] += Xab[d] * g[e];
-      m.sum[e] += g[e];
-    }
+    vectors.components(k, at, [&](int e, Pack g) {
+      gg += g * g;
+      for (int d = 0; d < D; ++d) m.outer[d * D + e] += Xab[d] * g;
+      m.sum[e] += g;
+    });
     for (int l = 0; l < lanes; ++l) m.scale[l] += std::sqrt(gg[l] * XX[l]);
   });
 }

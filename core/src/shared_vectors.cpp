@@ -1,4 +1,9 @@
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <taut/core/error.hpp>
 #include <taut/internal/block_dictionary.hpp>
 #include <taut/internal/pair_payload.hpp>
 #include <taut/internal/shared_vectors.hpp>
@@ -60,6 +65,29 @@ void for_keys(const Particles<D>& p, const PairList& pairs, double support, cons
 
 Index chunks_of(const PairList& pairs) { return (pairs.slices() + chunk_slices - 1) / chunk_slices; }
 
+// Turns the numbers of blocks into codes that also tell which components they have.
+template <int D>
+void mark_components(PairOperator<D>& op) {
+  constexpr std::size_t block = D * lanes;
+  const std::size_t n = op.blocks.size() / block;
+  if (n > static_cast<std::size_t>(std::numeric_limits<Index>::max() >> D))
+    throw InputError(
+        fmt::format("pair_precision \"shared\": {} different blocks of pair vectors are too many to number; "
+                    "use \"single\"",
+                    n));
+  std::vector<Index> codes(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    Index code = static_cast<Index>(i) << D;
+    for (int d = 0; d < D; ++d) {
+      const double* values = op.blocks.data() + i * block + static_cast<std::size_t>(d * lanes);
+      if (std::any_of(values, values + lanes, [](double g) { return g != 0; })) code |= 1 << d;
+    }
+    codes[i] = code;
+  }
+#pragma omp parallel for schedule(static) if (op.code.size() > 4096)
+  for (std::size_t k = 0; k < op.code.size(); ++k) op.code[k] = codes[static_cast<std::size_t>(op.code[k])];
+}
+
 }  // namespace
 
 template <int D>
@@ -102,6 +130,7 @@ void share_vectors(const Particles<D>& p, const PairList& pairs, const Kernel& k
           });
         });
   dictionary.finish(op.code, op.blocks);
+  mark_components<D>(op);
 }
 
 #define TAUT_INSTANTIATE(D)                                                                         \

@@ -2,12 +2,15 @@
 #include <doctest/doctest.h>
 #include <omp.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <taut/core/error.hpp>
 #include <taut/core/formulation.hpp>
 #include <taut/internal/assembly.hpp>
 #include <vector>
+
+#include "discretised.hpp"
 
 using namespace taut;
 
@@ -107,6 +110,24 @@ TEST_CASE("a lattice shares its pair vectors, an unordered cloud does not, and a
   const auto jittered = body<3>(0.2);
   CHECK(Body<3>(jittered, PairPrecision::automatic).form->bytes() ==
         Body<3>(jittered, PairPrecision::single_precision).form->bytes());
+}
+
+TEST_CASE("codes of shared vectors name their components, and a lattice leaves many out") {
+  Method method;
+  method.pair_precision = PairPrecision::shared;
+  // A corner that no binary fraction meets.
+  const auto cloud = make_cloud(box<3>({0.1, 0.7, -0.3}, {1.1, 1.7, 0.7}), {.dx = 1.0 / 17});
+  const Discretised<3> lattice(cloud, method);
+  Index kept = 0;
+  for (const Index code : lattice.op.code)
+    for (int d = 0; d < 3; ++d) {
+      const double* block = lattice.op.blocks.data() + (code >> 3) * (3 * lanes) + d * lanes;
+      const bool any = std::any_of(block, block + lanes, [](double g) { return g != 0; });
+      CHECK(any == static_cast<bool>(code >> d & 1));
+      kept += any;
+    }
+  // Of 18 neighbours six lie along an axis and twelve in a plane: 30 of 54 components.
+  CHECK(static_cast<double>(kept) / (3 * static_cast<double>(lattice.op.code.size())) < 0.6);
 }
 
 TEST_CASE("forces of every payload have the same bits for one and two threads") {

@@ -34,7 +34,8 @@ struct PairOperator {
   AlignedArray<double> vectors_d;
   AlignedArray<float> adjoint_f;  ///< -G_ba, where it differs from G_ab; else empty
   AlignedArray<double> adjoint_d;
-  // Shared: slot k has the vectors of block `code[k]`, laid out as above.
+  // Shared: slot k has the vectors of block `code[k] >> D`, laid out as above; bit d of the code is set where
+  // component d is not zero in all lanes.
   AlignedArray<Index> code;
   AlignedArray<double> blocks;
   // Recomputed.

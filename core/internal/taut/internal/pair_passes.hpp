@@ -19,11 +19,11 @@ TAUT_INLINE void outer_sum_of_slice(Index s, const PairList& pairs, const Payloa
   for (int c = 0; c < D * D; ++c) sum[c] = pack(0);
   const auto vectors = payload.slice(s);
   for_slots(pairs, s, [&](std::int64_t k, auto&& at) TAUT_INLINE_LAMBDA {
-    Pack g[D], xab[D];
-    vectors.get(k, at, g);
+    Pack xab[D];
     for (int d = 0; d < D; ++d) xab[d] = at(x.c[d]) - xi[d];
-    for (int e = 0; e < D; ++e)
-      for (int d = 0; d < D; ++d) sum[d * D + e] += xab[d] * g[e];
+    vectors.components(k, at, [&](int e, Pack g) TAUT_INLINE_LAMBDA {
+      for (int d = 0; d < D; ++d) sum[d * D + e] += xab[d] * g;
+    });
   });
 }
 
@@ -51,10 +51,9 @@ TAUT_INLINE void force_of_slice(Index s, const PairList& pairs, const Payload& p
   }
   const auto vectors = payload.adjoint().slice(s);
   for_slots(pairs, s, [&](std::int64_t k, auto&& at) TAUT_INLINE_LAMBDA {
-    Pack g[D];
-    vectors.get(k, at, g);
-    for (int e = 0; e < D; ++e)
-      for (int d = 0; d < D; ++d) force[d] += at(Q.c[d * D + e]) * g[e];
+    vectors.components(k, at, [&](int e, Pack g) TAUT_INLINE_LAMBDA {
+      for (int d = 0; d < D; ++d) force[d] += at(Q.c[d * D + e]) * g;
+    });
   });
 }
 

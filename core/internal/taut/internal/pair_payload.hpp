@@ -31,8 +31,8 @@ TAUT_INLINE void for_slots(const PairList& pairs, Index s, F&& f) {
     f(k, [at = pairs.block(k)](const double* p) TAUT_INLINE_LAMBDA { return gather(p, at); });
 }
 
-/// Asks for what slice s will be the first to touch, a few slices before its turn: the neighbours furthest on.
-/// A component of every row of neighbours is a stream of its own, more than hardware prefetchers follow.
+/// Asks for what slice s will be the first to touch, a few slices before its turn: the neighbours furthest
+/// on. A component of every row of neighbours is a stream of its own, more than hardware prefetchers follow.
 template <int N>
 TAUT_INLINE void prefetch_neighbours(const PairList& pairs, Index s, const Columns<N>& columns) {
   constexpr Index ahead = 4;
@@ -43,8 +43,9 @@ TAUT_INLINE void prefetch_neighbours(const PairList& pairs, Index s, const Colum
   for (int c = 0; c < N; ++c) __builtin_prefetch(columns.c[c] + last);
 }
 
-// A payload gives, for one slice, the eight pair vectors G_ab of a slot: `slice(s).get(k, at, g)`, zero where
-// the slot has no pair.
+// A payload gives, for one slice, the eight pair vectors G_ab of a slot, component by component:
+// `slice(s).components(k, at, f)` calls f(d, G_d), where G_d is zero in lanes without a pair. It may leave
+// out components that are zero in all lanes.
 
 template <int D, class Real>
 struct StoredVectors {
@@ -52,9 +53,9 @@ struct StoredVectors {
 
   StoredVectors adjoint() const { return {adjoints, vectors}; }
   TAUT_INLINE const StoredVectors& slice(Index) const { return *this; }
-  template <class At>
-  TAUT_INLINE void get(std::int64_t k, const At&, Pack (&g)[D]) const {
-    for (int d = 0; d < D; ++d) g[d] = load(vectors + (k * D + d) * lanes);
+  template <class At, class F>
+  TAUT_INLINE void components(std::int64_t k, const At&, F&& f) const {
+    for (int d = 0; d < D; ++d) f(d, load(vectors + (k * D + d) * lanes));
   }
 };
 
@@ -65,10 +66,14 @@ struct SharedVectors {
 
   const SharedVectors& adjoint() const { return *this; }
   TAUT_INLINE const SharedVectors& slice(Index) const { return *this; }
-  template <class At>
-  TAUT_INLINE void get(std::int64_t k, const At&, Pack (&g)[D]) const {
-    const double* block = blocks + static_cast<std::int64_t>(code[k]) * (D * lanes);
-    for (int d = 0; d < D; ++d) g[d] = load(block + d * lanes);
+  template <class At, class F>
+  TAUT_INLINE void components(std::int64_t k, const At&, F&& f) const {
+    // On a lattice most vectors lie along an axis or in a plane of two: what they leave out need not be
+    // loaded.
+    const Index c = code[k];
+    const double* block = blocks + static_cast<std::int64_t>(c >> D) * (D * lanes);
+    for (int d = 0; d < D; ++d)
+      if (c >> d & 1) f(d, load(block + d * lanes));
   }
 };
 
@@ -84,9 +89,9 @@ struct RecomputedVectors {
   struct Slice {
     const RecomputedVectors& of;
     Pack Xi[D], factor;
-    template <class At>
-    TAUT_INLINE void get(std::int64_t k, const At& at, Pack (&g)[D]) const {
-      Pack r2 = pack(0);
+    template <class At, class F>
+    TAUT_INLINE void components(std::int64_t k, const At& at, F&& f) const {
+      Pack g[D], r2 = pack(0);
       for (int d = 0; d < D; ++d) {
         g[d] = Xi[d] - at(of.X.c[d]);
         r2 += g[d] * g[d];
@@ -95,7 +100,7 @@ struct RecomputedVectors {
       const Pack slope = of.table.slope_over_r(r2);
       const Pack weights = of.weight ? factor * at(of.weight) : factor;
       const Pack w = lanes_of(of.pairs.mask(k)) ? slope * weights : pack(0);
-      for (int d = 0; d < D; ++d) g[d] *= w;
+      for (int d = 0; d < D; ++d) f(d, g[d] * w);
     }
   };
   TAUT_INLINE Slice slice(Index s) const {
