@@ -5,7 +5,7 @@
 #include <taut/core/error.hpp>
 #include <taut/integrators/vector_ops.hpp>
 #include <taut/internal/compatible_operator.hpp>
-#include <taut/internal/pair_payload.hpp>
+#include <taut/internal/pair_passes.hpp>
 #include <taut/internal/pair_vectors.hpp>
 
 namespace taut {
@@ -16,26 +16,15 @@ namespace {
 template <int D>
 class ClosureSystem {
  public:
-  ClosureSystem(const Particles<D>& p, const PairList& pairs, const Kernel& kernel, double h,
-                const PairOperator<D>& op)
-      : p_(p),
-        pairs_(pairs),
-        op_(op),
-        weight_(static_cast<std::size_t>(pairs.slots()) * lanes),
-        moments_(size(), D * D),
-        mu_(size(), D * D),
-        first_moment_(size(), D) {
-    const double top = kernel.value(0, h);
+  ClosureSystem(const Particles<D>& p, const PairList& pairs, const PairOperator<D>& op)
+      : p_(p), pairs_(pairs), op_(op), moments_(size(), D * D), mu_(size(), D * D), first_moment_(size(), D) {
 #pragma omp parallel for schedule(dynamic, 512)
     for (Index a = 0; a < p.n; ++a) {
       Mat<D> A = Mat<D>::Zero();
       Vec<D> m = Vec<D>::Zero();
-      each_pair(a, [&](Index, std::int64_t k, int lane, const Vec<D>& X) {
-        const double W = kernel.value(X.norm(), h) / top;
-        weight_[static_cast<std::size_t>(k * lanes + lane)] = static_cast<float>(W * W);
-        const double w = weight(k, lane);
-        A += w * X * X.transpose();
-        m += w * X;
+      each_pair(a, [&](Index, std::int64_t, int, const Vec<D>& X) {
+        A += X * X.transpose();
+        m += X;
       });
       moments_.template set_mat<D>(a, A.inverse());
       first_moment_.template set_vec<D>(a, m);
@@ -54,12 +43,10 @@ class ClosureSystem {
     for (Index s = 0; s < pairs_.slices(); ++s) {
       Pack sum[D * D];
       for (auto& c : sum) c = pack(0);
-      each_slot(s, X, l,
-                [&](std::int64_t, auto&&, const Pack(&wX)[D], Pack, const Pack(&difference)[D])
-                    TAUT_INLINE_LAMBDA {
-                      for (int d = 0; d < D; ++d)
-                        for (int e = 0; e < D; ++e) sum[d * D + e] -= difference[d] * wX[e];
-                    });
+      each_slot(s, X, l, [&](auto&&, const Pack(&X_ab)[D], const Pack(&difference)[D]) TAUT_INLINE_LAMBDA {
+        for (int d = 0; d < D; ++d)
+          for (int e = 0; e < D; ++e) sum[d * D + e] -= difference[d] * X_ab[e];
+      });
       for (int d = 0; d < D; ++d)
         for (int e = 0; e < D; ++e) {
           Pack m = sum[d * D] * load(inverse.c[e] + s * lanes);
@@ -83,14 +70,12 @@ class ClosureSystem {
         for (int e = 1; e < D; ++e)
           sum[d] += load(mu.c[d * D + e] + s * lanes) * load(first.c[e] + s * lanes);
       }
-      each_slot(s, X, l,
-                [&](std::int64_t, auto&& at, const Pack(&wX)[D], Pack w, const Pack(&difference)[D])
-                    TAUT_INLINE_LAMBDA {
-                      for (int d = 0; d < D; ++d) {
-                        sum[d] += 2 * w * difference[d];
-                        for (int e = 0; e < D; ++e) sum[d] += at(mu.c[d * D + e]) * wX[e];
-                      }
-                    });
+      each_slot(s, X, l, [&](auto&& at, const Pack(&X_ab)[D], const Pack(&difference)[D]) TAUT_INLINE_LAMBDA {
+        for (int d = 0; d < D; ++d) {
+          sum[d] += 2 * difference[d];
+          for (int e = 0; e < D; ++e) sum[d] += at(mu.c[d * D + e]) * X_ab[e];
+        }
+      });
       for (int d = 0; d < D; ++d) store(out.component(d) + s * lanes, sum[d]);
     }
   }
@@ -102,24 +87,23 @@ class ClosureSystem {
     for (Index a = 0; a < p_.n; ++a) {
       const Vec<D> m = first_moment_.template vec<D>(a);
       double sum = -m.dot(moments_.template mat<D>(a) * m);
-      each_pair(a, [&](Index b, std::int64_t k, int lane, const Vec<D>& X) {
-        const double w = weight(k, lane);
-        sum += 2 * w - w * w * X.dot(moments_.template mat<D>(b) * X);
+      each_pair(a, [&](Index b, std::int64_t, int, const Vec<D>& X) {
+        sum += 2 - X.dot(moments_.template mat<D>(b) * X);
       });
       for (int d = 0; d < D; ++d) inverse.component(d)[a] = sum > 0 ? 1 / sum : 0;
     }
     return inverse;
   }
 
-  /// V_a K_a V_b grad W_ab + w^2 (mu_a X_ab + lambda_a - lambda_b), with the matrices of `of`: a itself for
+  /// V_a K_a V_b grad W_ab + mu_a X_ab + lambda_a - lambda_b, with the matrices of `of`: a itself for
   /// G_ab, b for -G_ba. One function for both, so that they are the same numbers bit for bit.
   [[gnu::noinline]] Vec<D> vector(Index of, std::int64_t k, int lane, const Vec<D>& X,
                                   const Vec<D>& difference) const {
     return p_.V.component(0)[of] * (op_.M.template mat<D>(of) * op_.vector(k, lane)) +
-           weight(k, lane) * (mu_.template mat<D>(of) * X + difference);
+           (mu_.template mat<D>(of) * X + difference);
   }
 
-  /// f(k, at, w X_ab, w, lambda_a - lambda_b) for each slot of a slice, w = 0 where it has no pair.
+  /// f(at, X_ab, lambda_a - lambda_b) for each slot of a slice, both zero where it has no pair.
   template <class F>
   TAUT_INLINE void each_slot(Index s, const Columns<D>& X, const Columns<D>& lambda, F&& f) const {
     Pack Xa[D], la[D];
@@ -128,13 +112,13 @@ class ClosureSystem {
       la[d] = load(lambda.c[d] + s * lanes);
     }
     for_slots(pairs_, s, [&](std::int64_t k, auto&& at) TAUT_INLINE_LAMBDA {
-      const Pack w = load(weight_.data() + k * lanes);
-      Pack wX[D], difference[D];
+      const PackMask pair = lanes_of(pairs_.mask(k));
+      Pack X_ab[D], difference[D];
       for (int d = 0; d < D; ++d) {
-        wX[d] = w * (at(X.c[d]) - Xa[d]);
-        difference[d] = la[d] - at(lambda.c[d]);
+        X_ab[d] = pair ? at(X.c[d]) - Xa[d] : pack(0);
+        difference[d] = pair ? la[d] - at(lambda.c[d]) : pack(0);
       }
-      f(k, at, wX, w, difference);
+      f(at, X_ab, difference);
     });
   }
 
@@ -161,14 +145,9 @@ class ClosureSystem {
   }
 
  private:
-  double weight(std::int64_t k, int lane) const {
-    return static_cast<double>(weight_[static_cast<std::size_t>(k * lanes + lane)]);
-  }
-
   const Particles<D>& p_;
   const PairList& pairs_;
   const PairOperator<D>& op_;
-  AlignedArray<float> weight_;  // kernel squared over its value at zero squared
   Field moments_, mu_, first_moment_;
 };
 
@@ -195,11 +174,38 @@ void check_areas(const Particles<D>& p) {
 }  // namespace
 
 template <int D>
-double make_compatible(const Particles<D>& p, const PairList& pairs, const Kernel& kernel, double h,
-                       int iterations, PairOperator<D>& op) {
+bool is_closed(const Particles<D>& p, const PairList& pairs, const PairOperator<D>& op) {
+  check_areas(p);
+  // The forces of a unit stress, which the areas take up.
+  Field stress(static_cast<std::size_t>(p.total), D * D);
+  const Index slices = (p.n + lanes - 1) / lanes;
+  for (Index s = 0; s < slices; ++s) {
+    const SliceCoefficients<D> of(op, s);
+    const Pack V = load(p.V.component(0) + s * lanes);
+    for (int c = 0; c < D * D; ++c) store(stress.component(c) + s * lanes, V * of.matrix(c));
+  }
+  p.mirror.tensors(stress);
+  const double negligible = 1e-4 * std::pow(p.dx, D - 1);
+  bool closed = true;
+  with_payload<D>(op, pairs, p.X, [&](const auto& payload) {
+    const Columns<D * D> Q(stress);
+    for (Index s = 0; closed && s < slices; ++s) {
+      Pack force[D];
+      force_of_slice<D>(s, pairs, payload, Q, {op, s}, force);
+      for (Index a = s * lanes; a < std::min<Index>((s + 1) * lanes, p.n); ++a)
+        for (int d = 0; d < D; ++d)
+          closed =
+              closed && std::abs(force[d][a - s * lanes] + p.B[static_cast<std::size_t>(a)][d]) < negligible;
+    }
+  });
+  return closed;
+}
+
+template <int D>
+double make_compatible(const Particles<D>& p, const PairList& pairs, int iterations, PairOperator<D>& op) {
   check_areas(p);
   p.mirror.tensors(op.M);
-  ClosureSystem<D> system(p, pairs, kernel, h, op);
+  ClosureSystem<D> system(p, pairs, op);
 
   // Preconditioned conjugate gradients; the D components are D independent systems taken as one. Residuals
   // and images are zero beyond the bodies' particles, so sums may run over whole fields.
@@ -238,11 +244,11 @@ double make_compatible(const Particles<D>& p, const PairList& pairs, const Kerne
   return before > negligible ? now / before : 0;
 }
 
-template double make_compatible<1>(const Particles<1>&, const PairList&, const Kernel&, double, int,
-                                   PairOperator<1>&);
-template double make_compatible<2>(const Particles<2>&, const PairList&, const Kernel&, double, int,
-                                   PairOperator<2>&);
-template double make_compatible<3>(const Particles<3>&, const PairList&, const Kernel&, double, int,
-                                   PairOperator<3>&);
+template bool is_closed<1>(const Particles<1>&, const PairList&, const PairOperator<1>&);
+template bool is_closed<2>(const Particles<2>&, const PairList&, const PairOperator<2>&);
+template bool is_closed<3>(const Particles<3>&, const PairList&, const PairOperator<3>&);
+template double make_compatible<1>(const Particles<1>&, const PairList&, int, PairOperator<1>&);
+template double make_compatible<2>(const Particles<2>&, const PairList&, int, PairOperator<2>&);
+template double make_compatible<3>(const Particles<3>&, const PairList&, int, PairOperator<3>&);
 
 }  // namespace taut

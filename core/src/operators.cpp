@@ -187,19 +187,22 @@ void fill_matrices(bool corrected, const Particles<D>& p, const PairList& pairs,
 template <int D>
 PairPrecision resolve(const Method& method, const Particles<D>& p, const PairList& pairs, double support,
                       const Field& weights) {
-  const bool stored = method.operators == "compatible" || method.operators == "quadratic";
-  if (method.pair_precision == PairPrecision::automatic) {
-    // A slot that nothing is shared with costs twice the bytes of one in single precision.
-    constexpr double worthwhile = 0.4;
-    return !stored && distinct_fraction<D>(p, pairs, support, weights) < worthwhile
-               ? PairPrecision::shared
-               : PairPrecision::single_precision;
-  }
-  if (stored &&
-      (method.pair_precision == PairPrecision::shared || method.pair_precision == PairPrecision::recomputed))
+  if (method.pair_precision != PairPrecision::automatic) return method.pair_precision;
+  // A slot that nothing is shared with costs twice the bytes of one in single precision.
+  constexpr double worthwhile = 0.4;
+  return method.operators != "quadratic" && distinct_fraction<D>(p, pairs, support, weights) < worthwhile
+             ? PairPrecision::shared
+             : PairPrecision::single_precision;
+}
+
+bool is_stored(PairPrecision precision) {
+  return precision == PairPrecision::single_precision || precision == PairPrecision::double_precision;
+}
+
+void require_stored(const Method& method, PairPrecision precision) {
+  if (!is_stored(precision))
     throw InputError(fmt::format("the pair vectors of {} operators cannot be {}: choose single or double",
-                                 method.operators, to_string(method.pair_precision)));
-  return method.pair_precision;
+                                 method.operators, to_string(precision)));
 }
 
 }  // namespace
@@ -221,18 +224,28 @@ PairOperator<D> make_operator(const Method& method, const Particles<D>& p, const
   else
     op.weight_product = std::pow(p.dx, 2 * D);
   op.precision = resolve<D>(method, p, pairs, support, op.weight);
-  if (name == "quadratic")
-    make_quadratic(p, pairs, kernel, h, op);
-  else
-    fill_radial_vectors(p, pairs, kernel, h, op);
   const auto make_matrices = [&] {
     with_payload<D>(op, pairs, p.X, [&](const auto& payload) {
       fill_matrices<D>(name != "standard", p, pairs, payload, op);
     });
   };
+  if (name == "quadratic") {
+    require_stored(method, op.precision);
+    make_quadratic(p, pairs, kernel, h, op);
+  } else {
+    fill_radial_vectors(p, pairs, kernel, h, op);
+  }
   make_matrices();
-  if (name == "compatible") {
-    make_compatible(p, pairs, kernel, h, method.compatible_iterations, op);
+  const bool automatic = method.pair_precision == PairPrecision::automatic;
+  if (name == "compatible" && !(automatic && is_closed(p, pairs, op))) {
+    if (automatic && !is_stored(op.precision)) {
+      op = {};
+      op.weight_product = std::pow(p.dx, 2 * D);
+      fill_radial_vectors(p, pairs, kernel, h, op);
+      make_matrices();
+    }
+    require_stored(method, op.precision);
+    make_compatible(p, pairs, method.compatible_iterations, op);
     make_matrices();  // linear exactness of the vectors as stored
   }
   if (op.precision != PairPrecision::recomputed) op.weight = {};  // they are in the vectors

@@ -35,7 +35,7 @@ struct Method {
   PairPrecision pair_precision = PairPrecision::automatic;
 
   /// Conjugate-gradient iterations of the set-up of `compatible` operators.
-  int compatible_iterations = 40;
+  int compatible_iterations = 20;
 
   /// Pairwise zero-energy control of the total Lagrangian forms (Ganzenmueller 2015), 0 = absent.
   double zero_energy_control = 0;
