@@ -6,6 +6,7 @@
 #include <cmath>
 #include <taut/core/error.hpp>
 #include <taut/core/operators.hpp>
+#include <taut/internal/antisymmetric_operator.hpp>
 #include <taut/internal/block_dictionary.hpp>
 #include <taut/internal/compatible_operator.hpp>
 #include <taut/internal/describe.hpp>
@@ -207,7 +208,12 @@ void require_stored(const Method& method, PairPrecision precision) {
 
 }  // namespace
 
-std::vector<std::string> operator_names() { return {"standard", "corrected", "compatible", "quadratic"}; }
+bool needs_areas(std::string_view operators) {
+  return operators == "compatible" || operators == "antisymmetric";
+}
+std::vector<std::string> operator_names() {
+  return {"standard", "corrected", "compatible", "antisymmetric", "quadratic"};
+}
 
 template <int D>
 PairOperator<D> make_operator(const Method& method, const Particles<D>& p, const PairList& pairs,
@@ -237,7 +243,8 @@ PairOperator<D> make_operator(const Method& method, const Particles<D>& p, const
   }
   make_matrices();
   const bool automatic = method.pair_precision == PairPrecision::automatic;
-  if (name == "compatible" && !(automatic && is_closed(p, pairs, op))) {
+  const bool antisymmetric = name == "antisymmetric";
+  if (needs_areas(name) && !(automatic && is_closed(p, pairs, op))) {
     if (automatic && !is_stored(op.precision)) {
       op = {};
       op.weight_product = std::pow(p.dx, 2 * D);
@@ -245,8 +252,12 @@ PairOperator<D> make_operator(const Method& method, const Particles<D>& p, const
       make_matrices();
     }
     require_stored(method, op.precision);
-    make_compatible(p, pairs, method.compatible_iterations, op);
-    make_matrices();  // linear exactness of the vectors as stored
+    if (antisymmetric) {
+      make_antisymmetric<D>(p, pairs, method.compatible_iterations, op, make_matrices);
+    } else {
+      make_compatible(p, pairs, method.compatible_iterations, op);
+      make_matrices();  // linear exactness of the vectors as stored
+    }
   }
   if (op.precision != PairPrecision::recomputed) op.weight = {};  // they are in the vectors
   return op;

@@ -221,7 +221,7 @@ void Simulation<D>::prepare() {
   if (impl_->formulation) return;
   const auto start = std::chrono::steady_clock::now();
   SimulationImpl<D>& s = *impl_;
-  if (s.method.operators == "compatible" && s.planes.empty()) enclose(s.cloud);
+  if (needs_areas(s.method.operators) && s.planes.empty()) enclose(s.cloud);
   const double reach = s.method.support_dx * s.cloud.dx * (1 + s.method.skin);
   s.particles = assemble<D>(s.cloud, s.materials, s.material, s.planes, reach);
   for (const auto& condition : s.conditions) condition();

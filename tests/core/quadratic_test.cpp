@@ -192,6 +192,6 @@ TEST_CASE("quadratic operators refuse vectors that are shared or recomputed, and
                          doctest::Contains("the pair vectors of quadratic operators cannot be"), InputError);
   Method method = quadratic();
   method.operators = "cubic";
-  CHECK_THROWS_WITH_AS(Discretised<2>(brick<2>(4), method), doctest::Contains("compatible, quadratic"),
+  CHECK_THROWS_WITH_AS(Discretised<2>(brick<2>(4), method), doctest::Contains("antisymmetric, quadratic"),
                        InputError);
 }

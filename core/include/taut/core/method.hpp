@@ -34,7 +34,7 @@ struct Method {
   std::string neighbours = "cell_list";
   PairPrecision pair_precision = PairPrecision::automatic;
 
-  /// Conjugate-gradient iterations of the set-up of `compatible` operators.
+  /// Conjugate-gradient iterations of the set-up of `compatible` and `antisymmetric` operators.
   int compatible_iterations = 20;
 
   /// Pairwise zero-energy control of the total Lagrangian forms (Ganzenmueller 2015), 0 = absent.

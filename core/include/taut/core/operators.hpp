@@ -77,19 +77,23 @@ struct PairOperator {
 /// Bonet & Lok 1999). The matrix is made from the pair vectors as they are kept, hence linear fields are
 /// exact in single precision as well. Neighbours weigh alike, whatever their volumes: those next to a face of
 /// a node-centred lattice, where tributary volumes are half, then see as much to both sides. At R = 1.5 dx a
-/// constant stress so makes the forces of its tractions on the faces and none inside, to round-off; with
+/// constant stress so makes the forces of its tractions on the faces and (to 1e-5 of them) none inside; with
 /// volumes as weights a held face carries 3/2 of the stress that it should. `compatible`: the least change of
 /// those vectors that also closes: see taut/internal/compatible_operator.hpp. Needs boundary area vectors;
-/// its vectors are stored, in single precision when the method says `automatic`. `quadratic`: moving least
-/// squares, gradients of quadratic fields exact at every particle (to the precision of the vectors, linear
-/// fields to round-off); see taut/internal/quadratic_operator.hpp. Stored likewise; needs about R = 2.1 dx
-/// on a lattice, 2.4 dx where it is jittered, and does not close, so that a constant stress makes forces next
-/// to faces and wherever the cloud is irregular. \throws InputError for an unknown name (valid ones listed),
-/// missing areas, compatible or quadratic vectors that are to be shared or recomputed, or a particle whose
-/// matrix is singular: its id, its position, how many neighbours it has, and what to do.
+/// its vectors are stored, but where `automatic` finds those of `corrected` closed and shared.
+/// `antisymmetric`: the same with vectors that stay antisymmetric, as light as `corrected`, closed but for a
+/// few per cent: see taut/internal/antisymmetric_operator.hpp. `quadratic`: moving least squares, gradients
+/// of quadratic fields exact at every particle (to the precision of the vectors, linear fields to round-off);
+/// see taut/internal/quadratic_operator.hpp. Stored likewise; needs about R = 2.1 dx on a lattice, 2.4 dx
+/// where it is jittered, and does not close, so that a constant stress makes forces next to faces and
+/// wherever the cloud is irregular. \throws InputError for an unknown name (valid ones listed), missing
+/// areas, vectors other than those of `standard` and `corrected` that are to be shared or recomputed, or a
+/// particle whose matrix is singular: its id, its position, how many neighbours it has, and what to do.
 template <int D>
 PairOperator<D> make_operator(const Method& method, const Particles<D>& particles, const PairList& pairs,
                               const Kernel& kernel, double smoothing_length);
 std::vector<std::string> operator_names();
+/// Whether these operators are made with the boundary area vectors of the particles.
+bool needs_areas(std::string_view operators);
 
 }  // namespace taut
