@@ -43,16 +43,13 @@ std::vector<Method> ladder(const AutoFacts& facts) {
   apply_auto_rules(facts, {}, chosen);
   std::vector<Method> methods = {chosen};
   if (facts.rate_law) return methods;
-  for (const auto& [operators, kernel, support_dx] :
-       {std::tuple("corrected", "wendland_c2", 1.5), std::tuple("corrected", "quadratic", 1.5),
-        std::tuple("compatible", "wendland_c2", 1.5), std::tuple("compatible", "quadratic", 1.5),
-        std::tuple("compatible", "wendland_c2", 2.4)}) {
-    Method m;
-    m.operators = operators;
-    m.kernel = kernel;
-    m.support_dx = support_dx;
-    methods.push_back(m);
-  }
+  for (const char* operators : {"corrected", "compatible", "antisymmetric"})
+    for (const char* kernel : {"wendland_c2", "quadratic"}) {
+      Method m;
+      m.operators = operators;
+      m.kernel = kernel;
+      methods.push_back(m);
+    }
   return methods;
 }
 

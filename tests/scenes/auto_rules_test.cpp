@@ -50,10 +50,10 @@ TEST_CASE("auto takes the cheap set-up on a plain lattice in a box") {
   CHECK(!says(run, "lock"));
 }
 
-TEST_CASE("auto takes compatible operators where particles are irregular") {
+TEST_CASE("auto takes operators that close where particles are irregular") {
   const RunSpec jittered = run_with("formulation = \"auto\"\njitter = 0.1\n");
-  CHECK(jittered.method.operators == "compatible");
-  CHECK(jittered.method.kernel == "wendland_c2");
+  CHECK(jittered.method.operators == "antisymmetric");
+  CHECK(jittered.method.kernel == "quadratic");
   const RunSpec disc =
       run_with("formulation = \"auto\"\n", "type = \"box\"\nmin = [0.0, 0.0]\nmax = [0.2, 0.05]",
                "type = \"sphere\"\ncentre = [0.1, 0.025]\nradius = 0.1");
@@ -62,8 +62,8 @@ TEST_CASE("auto takes compatible operators where particles are irregular") {
       run_with("formulation = \"auto\"\n",
                "type = \"box\"\nmin = [0.0, 0.0]\nmax = [0.2, 0.05]\n\n[lattice]\ndx = 0.0125",
                "type = \"csv\"\nfile = \"cloud.csv\"");
-  CHECK(cloud.method.operators == "compatible");
-  CHECK(cloud.method.kernel == "wendland_c2");
+  CHECK(cloud.method.operators == "antisymmetric");
+  CHECK(cloud.method.kernel == "quadratic");
 }
 
 TEST_CASE("auto takes an updated Lagrangian form for stress rates, the run's own material first") {

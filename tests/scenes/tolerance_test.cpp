@@ -139,15 +139,15 @@ TEST_CASE("the scene's runs are candidates, once each") {
   const auto all = candidates_of(scene, true, left_out);
   CHECK(left_out.empty());
   CHECK(all.front().run.label == "total");
-  CHECK(all.size() == 5);
+  CHECK(all.size() == 6);
   CHECK(std::count_if(all.begin(), all.end(), [](const Candidate& c) {
           return c.run.method.operators == "corrected" && c.run.method.kernel == "wendland_c2";
         }) == 1);
 
   const Scene other = parse_scene(test::good_scene + "material = \"neo_hookean\"\n", "other.toml");
-  CHECK(candidates_of(other, true, left_out).size() == 6);
+  CHECK(candidates_of(other, true, left_out).size() == 7);
   CHECK(left_out.empty());
-  CHECK(candidates_of(other, false, left_out).size() == 5);  // nothing tells which material is right
+  CHECK(candidates_of(other, false, left_out).size() == 6);  // nothing tells which material is right
   CHECK(left_out.size() == 1);
 }
 
@@ -184,7 +184,7 @@ TEST_CASE("--tolerance finds, verifies and reports a method for a body with a re
   CHECK(outcome.out.find("the cheapest that meets 1 % is ") != std::string::npos);
   const std::vector<Row> rows = read_results(folder.path / "result/results.csv");
   CHECK(std::count_if(rows.begin(), rows.end(), [](const Row& r) { return r.quantity == "pilot_tip_ux"; }) ==
-        10);
+        12);
   const auto chosen =
       std::find_if(rows.begin(), rows.end(), [](const Row& r) { return r.quantity == "chosen_tip_ux"; });
   REQUIRE(chosen != rows.end());
