@@ -18,6 +18,8 @@ namespace taut {
 /// Zeroed memory on a 64-byte boundary, to be given to std::free. Its pages are first touched by the threads
 /// of a static OpenMP schedule, the same that later loop over it. \throws std::bad_alloc
 void* allocate_zeroed(std::size_t bytes);
+/// The same without zeros: pages that are never written take no memory.
+void* allocate(std::size_t bytes);
 
 /// A fixed-size array on 64-byte boundaries, zeroed (see `allocate_zeroed`). Copyable; never grows.
 template <class T>
@@ -29,6 +31,13 @@ class AlignedArray {
   explicit AlignedArray(std::size_t n) : size_(n) {
     if (n) data_.reset(static_cast<T*>(allocate_zeroed(n * sizeof(T))));
   }
+  /// Not zeroed, to be written before it is read.
+  static AlignedArray for_overwrite(std::size_t n) {
+    AlignedArray a;
+    a.size_ = n;
+    if (n) a.data_.reset(static_cast<T*>(allocate(n * sizeof(T))));
+    return a;
+  }
   AlignedArray(const AlignedArray& o) : AlignedArray(o.size_) {
     if (size_) std::memcpy(data_.get(), o.data_.get(), size_ * sizeof(T));
   }
@@ -39,6 +48,9 @@ class AlignedArray {
     return *this;
   }
   ~AlignedArray() = default;
+
+  /// Leaves the first n of the elements. Gives no memory back.
+  void truncate(std::size_t n) { size_ = std::min(n, size_); }
 
   T* data() { return data_.get(); }
   const T* data() const { return data_.get(); }
