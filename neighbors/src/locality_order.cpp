@@ -155,7 +155,7 @@ struct SortKeys {
 // Where spacings differ, a cell that suits the widest holds hundreds of the narrowest: keys follow the curve
 // through cells this many times halved, and only crowded cells use those digits.
 constexpr int halvings = 4;
-constexpr Index crowd = 32;
+constexpr Index crowd = 8;
 
 template <int D>
 SortKeys curve_keys(const PointView<D>& points, double cell) {

@@ -53,7 +53,7 @@ PairList find_pairs(PointView<D> points, std::span<const double> radii, SearchOp
 
 /// New order for locality: `order[new] = old`. Lattices (points on few distinct coordinates, rounding aside)
 /// are put in lexicographic order, last coordinate slowest; other clouds follow a Hilbert curve of cells of
-/// size `cell` [m], those of more than 32 points halved up to four times, and within a cell the coordinates,
+/// size `cell` [m], those of more than 8 points halved up to four times, and within a cell the coordinates,
 /// last slowest. Depends on the positions alone. \throws
 /// InputError for a coordinate that is not finite, a cell size that is not positive and finite.
 template <int D>
