@@ -28,21 +28,33 @@ inline std::uint64_t mix(std::uint64_t h) {  // finaliser of splitmix64 (Steele,
   return h ^ (h >> 31);
 }
 
+// Bounds of a number in single precision, finite ones; the number itself may be off by a few units in its
+// last place.
+constexpr float most = std::numeric_limits<float>::max() / 2;
+inline float lower_bound(double v) {
+  const auto f = static_cast<float>(std::clamp<double>(v, -most, most));
+  return f - std::abs(f) * 0x1p-22f;
+}
+inline float upper_bound(double v) { return -lower_bound(-v); }
+
+// Squared distances of bounds, in units of the largest radius, are too large by less.
+constexpr double rounding = 1 + 1e-6;
+
 }  // namespace
 
 template <int D>
-CellGrid<D>::CellGrid(std::span<const Cluster<D>> clusters, const std::vector<Index>& members, bool graded)
-    : n_(static_cast<Index>(members.empty() ? clusters.size() : members.size())), graded_(graded) {
+CellGrid<D>::CellGrid(const Clusters<D>& clusters, std::span<const Index> members, bool graded)
+    : n_(members.empty() ? clusters.slices() : static_cast<Index>(members.size())), graded_(graded) {
   if (n_ == 0) return;
-  const auto cluster = [&](Index i) -> const Cluster<D>& {
-    const Index c = members.empty() ? i : members[static_cast<std::size_t>(i)];
-    return clusters[static_cast<std::size_t>(c)];
+  const auto cluster = [&](Index i) {
+    return clusters[members.empty() ? i : members[static_cast<std::size_t>(i)]];
   };
 
   double first[D], last[D];
-  for (int d = 0; d < D; ++d) first[d] = last[d] = cluster(0).box.low[d];
+  const Cluster<D> any = cluster(0);
+  for (int d = 0; d < D; ++d) first[d] = last[d] = any.box.low[d];
   for (Index i = 0; i < n_; ++i) {
-    const Cluster<D>& c = cluster(i);
+    const Cluster<D> c = cluster(i);
     radius_ = std::max(radius_, c.radius);
     for (int d = 0; d < D; ++d) {
       first[d] = std::min(first[d], c.box.low[d]);
@@ -55,6 +67,7 @@ CellGrid<D>::CellGrid(std::span<const Cluster<D>> clusters, const std::vector<In
     longest_[d] = std::nextafter(longest_[d], std::numeric_limits<double>::infinity());  // it was rounded
     low_[d] = cell_of(first[d], radius_);
     high_[d] = cell_of(last[d], radius_);
+    corner_[d] = first[d];
     extent_[d] = high_[d] - low_[d] + 1;
     cells *= extent_[d];
   }
@@ -64,8 +77,9 @@ CellGrid<D>::CellGrid(std::span<const Cluster<D>> clusters, const std::vector<In
   auto keys = std::make_unique_for_overwrite<std::uint32_t[]>(static_cast<std::size_t>(n_));
 #pragma omp parallel for schedule(static) if (worth_threads(n_))
   for (Index i = 0; i < n_; ++i) {
+    const Cluster<D> c = cluster(i);
     double cell[3] = {};
-    for (int d = 0; d < D; ++d) cell[d] = cell_of(cluster(i).box.low[d], radius_);
+    for (int d = 0; d < D; ++d) cell[d] = cell_of(c.box.low[d], radius_);
     const std::uint64_t x = dense_ ? static_cast<std::uint64_t>(cell[0] - low_[0]) : as_bits(cell[0]);
     const std::uint64_t key = row(cell[1], cell[2]) + x;
     keys[i] = static_cast<std::uint32_t>(dense_ ? key : key & (buckets_ - 1));
@@ -73,32 +87,32 @@ CellGrid<D>::CellGrid(std::span<const Cluster<D>> clusters, const std::vector<In
   const auto order =
       sort_by_key(std::span(keys.get(), static_cast<std::size_t>(n_)), std::bit_width(buckets_ - 1));
 
-  const auto size = static_cast<std::size_t>(n_) + lanes;
+  const auto size = static_cast<std::size_t>(n_) + floats;
   for (int d = 0; d < D; ++d) {
-    lows_[d] = AlignedArray<double>(size);
-    highs_[d] = AlignedArray<double>(size);
+    lows_[d] = AlignedArray<float>::for_overwrite(size);
+    highs_[d] = AlignedArray<float>::for_overwrite(size);
   }
-  if (graded_) r2_ = AlignedArray<double>(size);
-  slice_ = AlignedArray<Index>(size);
-  count_.resize(size);
-  start_ = AlignedArray<std::uint32_t>(buckets_ + 1);
+  if (graded_) r2_ = AlignedArray<float>::for_overwrite(size);
+  slice_ = AlignedArray<Index>::for_overwrite(size);
+  inside_.resize(size);
+  start_ = AlignedArray<std::uint32_t>::for_overwrite(buckets_ + 1);
 #pragma omp parallel for schedule(static) if (worth_threads(n_))
   for (Index i = 0; i < n_; ++i) {
-    const Cluster<D>& c = cluster(order[i]);
+    const Cluster<D> c = cluster(order[i]);
+    bool inside = true;
     for (int d = 0; d < D; ++d) {
-      lows_[d][i] = c.box.low[d];
-      highs_[d][i] = c.box.high[d];
+      lows_[d][i] = lower_bound((c.box.low[d] - corner_[d]) / radius_);
+      highs_[d][i] = upper_bound((c.box.high[d] - corner_[d]) / radius_);
+      inside = inside && cell_of(c.box.low[d], radius_) == cell_of(c.box.high[d], radius_);
     }
-    if (graded_) r2_[i] = c.radius * c.radius;
+    if (graded_) r2_[i] = upper_bound(c.radius / radius_ * (c.radius / radius_) * rounding);
     slice_[i] = c.slice;
-    count_[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(c.count);
+    inside_[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(inside ? c.count : 0);
     for (std::uint64_t k = i == 0 ? 0 : keys[i - 1] + std::uint64_t{1}; k <= keys[i]; ++k)
       start_[k] = static_cast<std::uint32_t>(i);
   }
   for (std::uint64_t k = keys[n_ - 1] + std::uint64_t{1}; k <= buckets_; ++k)
     start_[k] = static_cast<std::uint32_t>(n_);
-  for (int d = 0; d < D; ++d)
-    std::fill(lows_[d].end() - lanes, lows_[d].end(), std::numeric_limits<double>::quiet_NaN());
 }
 
 // Bucket of the cell of a row whose x is zero (hashed) or the lowest (dense).
@@ -168,38 +182,42 @@ void CellGrid<D>::find_runs(const Box<D>& box, double reach, std::vector<Run>& r
     }
 }
 
-// Clusters nearer to the box than the radius. The distance between boxes is rounded as that between points
-// is, hence never larger than the distance between points of them.
+// Clusters nearer to the box than the radius.
 template <int D>
 template <bool graded>
 std::size_t CellGrid<D>::filter(const Box<D>& box, double reach, Workspace& work) const {
-  std::size_t most = lanes;
-  for (const Run& run : work.runs) most += run.end - run.begin + lanes;
-  if (work.slices.size() < most) work.slices.resize(2 * most);
+  std::size_t room = floats;
+  for (const Run& run : work.runs) room += run.end - run.begin + floats;
+  if (work.slices.size() < room) work.slices.resize(2 * room);
 
-  Double8 box_low[D], box_high[D];
-  const double *lows[D], *highs[D];
+  Float16 box_low[D], box_high[D];
+  const float *lows[D], *highs[D];
   for (int d = 0; d < D; ++d) {
-    box_low[d] = splat8(box.low[d]);
-    box_high[d] = splat8(box.high[d]);
+    box_low[d] = splat16(lower_bound((box.low[d] - corner_[d]) / radius_));
+    box_high[d] = splat16(upper_bound((box.high[d] - corner_[d]) / radius_));
     lows[d] = lows_[d].data();
     highs[d] = highs_[d].data();
   }
-  const double* const r2 = r2_.data();
+  const float* const r2 = r2_.data();
   const Index* const slice = slice_.data();
-  const Double8 reach2 = splat8(reach * reach), zero = splat8(0);
+  const auto n = static_cast<std::uint32_t>(n_);
+  // Where squares overflow nothing but everything can be near.
+  const Float16 reach2 = splat16(upper_bound(reach / radius_ * (reach / radius_) * rounding)),
+                zero = splat16(0), largest = splat16(most / 2);
   Index* out = work.slices.data();
   for (const Run& run : work.runs)
     for (std::uint32_t j = run.begin; j < run.end;
-         j += lanes) {  // a pack may reach beyond: into clusters like any others
-      Double8 d2;
+         j += floats) {  // a pack may reach beyond: into clusters like any others
+      Float16 d2;
       for (int d = 0; d < D; ++d) {
-        const Double8 below = box_low[d] - load8(highs[d] + j), above = load8(lows[d] + j) - box_high[d];
-        const Double8 gap = max(zero, max(below, above));  // in this order NaN stays NaN
-        d2 = d == 0 ? gap * gap : d2 + gap * gap;
+        const Float16 below = box_low[d] - load16(highs[d] + j), above = load16(lows[d] + j) - box_high[d];
+        const Float16 gap = max(zero, max(below, above));
+        d2 = d == 0 ? gap * gap : multiply_add(gap, gap, d2);
       }
-      const unsigned near = graded ? less(d2, max(reach2, load8(r2 + j))) : less(d2, reach2);
-      out = store_picked(slice + j, near, out);
+      unsigned near = less(min(d2, largest), graded ? max(reach2, load16(r2 + j)) : reach2);
+      if (j + floats > n) near &= (1u << (n - j)) - 1;
+      out = store_picked(slice + j, near & 0xff, out);
+      out = store_picked(slice + j + lanes, near >> lanes, out);
     }
   return static_cast<std::size_t>(out - work.slices.data());
 }
@@ -213,12 +231,7 @@ double CellGrid<D>::least_pairs() const {
   for (std::uint64_t k = 0; k < buckets_; ++k) {
     if ((start_[k + 1] - start_[k]) * lanes <= parts) continue;
     double count = 0;  // of particles in clusters that lie wholly in the cell
-    for (std::uint32_t j = start_[k]; j < start_[k + 1]; ++j) {
-      bool inside = true;
-      for (int d = 0; d < D; ++d)
-        inside = inside && cell_of(lows_[d][j], radius_) == cell_of(highs_[d][j], radius_);
-      if (inside) count += count_[j];
-    }
+    for (std::uint32_t j = start_[k]; j < start_[k + 1]; ++j) count += inside_[j];
     if (count > parts) pairs += count * (count / parts - 1);
   }
   return pairs;

@@ -26,8 +26,8 @@ class CellGrid {
     std::vector<Index> slices;
   };
 
-  // Of those `clusters` that `members` picks, all where it is empty.
-  CellGrid(std::span<const Cluster<D>> clusters, const std::vector<Index>& members, bool graded);
+  // Of those clusters that `members` picks, all slices where it is empty.
+  CellGrid(const Clusters<D>& clusters, std::span<const Index> members, bool graded);
 
   // The slices of the clusters that may hold particles within `reach` of the box, or within their own radii,
   // in work.slices; returns their number. A slice may come repeatedly.
@@ -49,10 +49,13 @@ class CellGrid {
   double low_[D], high_[D];  // cells in use
   double extent_[D];         // number of cells
   std::uint64_t buckets_ = 1;
-  AlignedArray<double> lows_[D], highs_[D];  // sorted by cell, NaN at the end to fill a pack
-  AlignedArray<double> r2_;
+  // Sorted by cell, with room at the end to fill a pack. Boxes relative to the corner of all, in units of the
+  // largest radius, rounded outwards.
+  double corner_[D];
+  AlignedArray<float> lows_[D], highs_[D];
+  AlignedArray<float> r2_;
   AlignedArray<Index> slice_;
-  std::vector<std::uint8_t> count_;
+  std::vector<std::uint8_t> inside_;  // particles of clusters that lie wholly in their cell
   AlignedArray<std::uint32_t> start_;
 };
 

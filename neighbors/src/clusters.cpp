@@ -53,30 +53,41 @@ void split(const Slice<D>& slice, int begin, int end, Put&& put) {
 }  // namespace
 
 template <int D>
-Clusters<D>::Clusters(const PointView<D>& points, const Radii& radii) {
+Clusters<D>::Clusters(const PointView<D>& points, const Radii& radii) : particles_(points.n) {
   const auto slices = static_cast<Index>(padded(static_cast<std::size_t>(points.n)) / lanes);
-  begin.resize(static_cast<std::size_t>(slices) + 1);
-  // Twice the work is less than memory for clusters whose number is not known yet.
+  boxes_ = AlignedArray<SliceBox>::for_overwrite(static_cast<std::size_t>(slices));
+  part_begin_.resize(static_cast<std::size_t>(slices) + 1);
 #pragma omp parallel for schedule(static) if (worth_threads(points.n))
   for (Index s = 0; s < slices; ++s) {
     const Slice<D> slice = make_slice(points, radii, s);
-    Index count = 0;
-    split(slice, 0, slice.count, [&](const Cluster<D>&) { ++count; });
-    begin[static_cast<std::size_t>(s)] = count;
+    SliceBox box{{}, 0, {}, 0};
+    Index parts = 0;
+    split(slice, 0, slice.count, [&](const Cluster<D>& c) {
+      for (int d = 0; d < D; ++d) {
+        box.low[d] = parts ? std::min(box.low[d], c.box.low[d]) : c.box.low[d];
+        box.high[d] = parts ? std::max(box.high[d], c.box.high[d]) : c.box.high[d];
+      }
+      box.radius = std::max(box.radius, c.radius);
+      ++parts;
+    });
+    boxes_[static_cast<std::size_t>(s)] = box;
+    part_begin_[static_cast<std::size_t>(s)] = parts > 1 ? parts : 0;
   }
   Index total = 0;
-  for (Index& b : begin) total += std::exchange(b, total);
-  all = AlignedArray<Cluster<D>>(static_cast<std::size_t>(total));
+  for (Index& b : part_begin_) total += std::exchange(b, total);
+  parts_.resize(static_cast<std::size_t>(total));
+  if (total == 0) return;
 #pragma omp parallel for schedule(static) if (worth_threads(points.n))
   for (Index s = 0; s < slices; ++s) {
+    if (whole(s)) continue;
     const Slice<D> slice = make_slice(points, radii, s);
-    Cluster<D>* out = all.data() + begin[static_cast<std::size_t>(s)];
+    Cluster<D>* out = parts_.data() + part_begin_[static_cast<std::size_t>(s)];
     split(slice, 0, slice.count, [&](const Cluster<D>& c) { *out++ = c; });
   }
 }
 
-template struct Clusters<1>;
-template struct Clusters<2>;
-template struct Clusters<3>;
+template class Clusters<1>;
+template class Clusters<2>;
+template class Clusters<3>;
 
 }  // namespace taut::detail

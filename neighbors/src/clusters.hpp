@@ -1,6 +1,7 @@
 #pragma once
-// Slices, or parts of them, whose particles are near each other: what cells hold.
+// Boxes of slices, and of the parts of slices whose particles are not near each other: what cells hold.
 
+#include <span>
 #include <taut/core/fields.hpp>
 #include <vector>
 
@@ -22,14 +23,48 @@ struct Cluster {
   int count;  // of particles
 };
 
-// The clusters of all particles in their order: a slice of an ordered cloud is one, a slice of particles that
-// are far apart up to eight.
+// Eight numbers a slice, to be loaded at once.
+struct alignas(64) SliceBox {
+  double low[3], radius, high[3], none;
+};
+
+// A slice of an ordered cloud is one cluster, a slice of particles that are far apart up to eight.
 template <int D>
-struct Clusters {
+class Clusters {
+ public:
   Clusters(const PointView<D>& points, const Radii& radii);
 
-  AlignedArray<Cluster<D>> all;
-  std::vector<Index> begin;  // of each slice's clusters; one more at the end
+  Index slices() const { return static_cast<Index>(boxes_.size()); }
+  const SliceBox& box(Index slice) const { return boxes_[static_cast<std::size_t>(slice)]; }
+  bool whole(Index slice) const { return parts_of(slice).empty(); }
+  // The clusters of a slice that is not whole.
+  std::span<const Cluster<D>> parts_of(Index slice) const {
+    const auto s = static_cast<std::size_t>(slice);
+    return {parts_.data() + part_begin_[s], parts_.data() + part_begin_[s + 1]};
+  }
+
+  // All, by a number: a whole slice's is that of the slice, then come the parts.
+  Index end() const { return slices() + static_cast<Index>(parts_.size()); }
+  bool exists(Index c) const { return c >= slices() || whole(c); }
+  Cluster<D> operator[](Index c) const {
+    if (c >= slices()) return parts_[static_cast<std::size_t>(c - slices())];
+    const SliceBox& b = box(c);
+    Cluster<D> whole{{}, b.radius, c, std::min(lanes, particles_ - c * lanes)};
+    for (int d = 0; d < D; ++d) {
+      whole.box.low[d] = b.low[d];
+      whole.box.high[d] = b.high[d];
+    }
+    return whole;
+  }
+  double radius(Index c) const {
+    return c < slices() ? box(c).radius : parts_[static_cast<std::size_t>(c - slices())].radius;
+  }
+
+ private:
+  Index particles_;
+  AlignedArray<SliceBox> boxes_;
+  std::vector<Index> part_begin_;  // by slice; one more at the end
+  std::vector<Cluster<D>> parts_;
 };
 
 }  // namespace taut::detail

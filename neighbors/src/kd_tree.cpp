@@ -46,35 +46,19 @@ struct Points {
   }
 };
 
-// Receives candidates from the tree. nanoflann sums squares in an order of its own, so the tree is asked for
-// a little more than the radius and every pair is tested with the arithmetic that all searches share.
+// Receives particles within reach from the tree.
 template <int D>
 struct Receiver {
   const Points<D>& points;
-  const Slice<D>& slice;
-  int lane;
   double reach2;
-  typename KdTree<D>::Workspace& work;
+  SliceSet& near;
 
   double worstDist() const { return reach2; }
   bool full() const { return true; }
   std::size_t size() const { return 0; }
   bool addPoint(double, Index i) {
-    const Index b = points.particle(static_cast<std::size_t>(i));
-    if (b == slice.first + lane) return true;
-    double d2 = 0;
-    for (int d = 0; d < D; ++d) {
-      const double dx = slice.x[d][lane] - points.points.x[d][b];
-      d2 = d == 0 ? dx * dx : d2 + dx * dx;
-    }
-    const double other_r2 = points.radii(b) * points.radii(b);
-    if (d2 < std::max(slice.r2[lane], other_r2)) {
-      if (d2 <= std::min(slice.r2[lane], other_r2) * coincident2) work.coincident |= 1u << lane;
-      std::uint8_t& mask = work.masks.data()[b];
-      mask = static_cast<std::uint8_t>(mask | 1u << lane);
-      const Index s = b / lanes;
-      work.near.insert(&s, 1);
-    }
+    const Index s = points.particle(static_cast<std::size_t>(i)) / lanes;
+    near.insert(&s, 1);
     return true;
   }
 };
@@ -92,29 +76,29 @@ struct KdTree<D>::Tree {
 };
 
 template <int D>
-KdTree<D>::KdTree(const PointView<D>& points, const Radii& radii) {
+KdTree<D>::KdTree(const PointView<D>& points, const Radii& radii, const Clusters<D>&)
+    : points_(points), radii_(radii) {
   for (const Level& level : levels_of(radii, points.n))
     trees_.push_back(std::make_unique<Tree>(points, radii, level));
 }
 template <int D>
 KdTree<D>::~KdTree() = default;
 
+// nanoflann sums squares in an order of its own, so the tree is asked for a little more than the radius;
+// every pair is tested with the arithmetic that all searches share.
 template <int D>
-unsigned KdTree<D>::search(const Slice<D>& slice, Workspace& work, SliceEncoder& encoder) const {
-  work.coincident = 0;
+void KdTree<D>::find(const SliceGroup<D>& group, Workspace& work, std::vector<Index>& slices) const {
+  for (Index s = group.begin; s < group.end; ++s) work.near.insert(&s, 1);
   for (const auto& tree : trees_)
-    for (int l = 0; l < slice.count; ++l) {
-      const double reach = std::max(slice.radius[l], tree->points.level.radius) * (1 + 1e-6);
-      Receiver<D> receiver{tree->points, slice, l, reach * reach, work};
+    for (Index a = group.begin * lanes; a < std::min(group.end * lanes, points_.n); ++a) {
+      const double reach = std::max(radii_(a), tree->points.level.radius) * (1 + 1e-6);
+      Receiver<D> receiver{tree->points, reach * reach, work.near};
       double at[D];
-      for (int d = 0; d < D; ++d) at[d] = slice.x[d][l];
+      for (int d = 0; d < D; ++d) at[d] = points_.x[d][a];
       tree->index.findNeighbors(receiver, at, nanoflann::SearchParams(0, 0.0f, false));
     }
-  work.near.drain(0, [&](Index begin, Index end) {
-    encoder.encode_masks(work.masks.data(), std::int64_t{begin} * lanes, std::int64_t{end} * lanes);
-  });
-  encoder.end_slice();
-  return work.coincident;
+  slices.clear();
+  work.near.drain(slices);
 }
 
 template class KdTree<1>;

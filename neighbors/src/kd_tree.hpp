@@ -4,9 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "lane_masks.hpp"
-#include "slice.hpp"
-#include "slice_encoder.hpp"
+#include "slice_group.hpp"
 #include "slice_set.hpp"
 
 namespace taut::detail {
@@ -15,21 +13,21 @@ template <int D>
 class KdTree {
  public:
   struct Workspace {
-    explicit Workspace(Index particles) : near(particles), masks(particles) {}
+    explicit Workspace(Index particles) : near(particles) {}
     SliceSet near;
-    LaneMasks masks;
-    unsigned coincident = 0;  // lanes that lie on another particle
   };
 
-  KdTree(const PointView<D>& points, const Radii& radii);
+  KdTree(const PointView<D>& points, const Radii& radii, const Clusters<D>& clusters);
   ~KdTree();
 
   double least_pairs() const { return 0; }
-  // Puts the pairs of the slice into the encoder. Returns the lanes that lie on another particle.
-  unsigned search(const Slice<D>& slice, Workspace& work, SliceEncoder& encoder) const;
+  // The slices that may hold particles which pair with one of the group, ascending.
+  void find(const SliceGroup<D>& group, Workspace& work, std::vector<Index>& slices) const;
 
  private:
   struct Tree;
+  PointView<D> points_;
+  Radii radii_;
   std::vector<std::unique_ptr<Tree>> trees_;  // one an octave of radii
 };
 

@@ -9,10 +9,28 @@
 
 namespace taut {
 
+namespace {
+
+template <class T>
+void enlarge(AlignedArray<T>& array, std::int64_t used, std::int64_t size) {
+  if (static_cast<std::int64_t>(array.size()) >= size) return;
+  auto larger = AlignedArray<T>::for_overwrite(static_cast<std::size_t>(size));
+  constexpr std::int64_t part = 1 << 16;
+#pragma omp parallel for schedule(static) if (used > part)
+  for (std::int64_t i = 0; i < used; i += part)
+    std::copy_n(array.data() + i, std::min(part, used - i), larger.data() + i);
+  array = std::move(larger);
+}
+
+}  // namespace
+
 PairListBuilder::PairListBuilder(Index particles)
     : particles_(particles),
       slices_(static_cast<Index>(padded(static_cast<std::size_t>(particles)) / lanes)) {
-  chunks_.resize(static_cast<std::size_t>((slices_ + chunk_slices - 1) / chunk_slices));
+  places_.resize(static_cast<std::size_t>((slices_ + chunk_slices - 1) / chunk_slices));
+  list_.particles_ = particles_;
+  list_.slice_begin_ = AlignedArray<std::int64_t>(static_cast<std::size_t>(slices_) + 1);
+  list_.slice_gathered_ = AlignedArray<std::int64_t>(static_cast<std::size_t>(slices_));
 }
 
 void PairListBuilder::check_slots(double slots, double particles) {
@@ -25,80 +43,98 @@ void PairListBuilder::check_slots(double slots, double particles) {
       particles, slots, most, slots * lanes / particles));
 }
 
-PairList PairListBuilder::build() {
-  std::int64_t slots = 0, blocks = 0;
-  std::vector<std::int64_t> slot_begin, block_begin;
-  PairList list;
-  list.particles_ = particles_;
-  for (const detail::EncodedSlices& chunk : chunks_) {
-    slot_begin.push_back(slots);
-    block_begin.push_back(blocks);
-    slots += chunk.slots;
-    blocks += chunk.blocks;
-    list.pairs_ += chunk.pairs;
-  }
-  check_slots(static_cast<double>(slots), particles_);
-
-  list.slice_begin_ = AlignedArray<std::int64_t>(static_cast<std::size_t>(slices_) + 1);
-  list.slice_gathered_ = AlignedArray<std::int64_t>(static_cast<std::size_t>(slices_));
-  list.first_ = AlignedArray<Index>(static_cast<std::size_t>(slots));
-  list.mask_ = AlignedArray<std::uint8_t>(static_cast<std::size_t>(slots));
-  list.index_ = AlignedArray<Index>(static_cast<std::size_t>(blocks) * lanes);
-  list.slice_begin_[static_cast<std::size_t>(slices_)] = slots;
-
-  detail::ParallelError error;
-#pragma omp parallel for schedule(static) if (detail::worth_threads(particles_))
-  for (Index c = 0; c < chunks(); ++c)
-    error.guard([&] {
-      const detail::EncodedSlices chunk = std::move(chunks_[static_cast<std::size_t>(c)]);
-      fill(chunk, begin_slice(c), slot_begin[static_cast<std::size_t>(c)],
-           block_begin[static_cast<std::size_t>(c)], list);
-    });
-  error.rethrow();
-  return list;
+void PairListBuilder::reserve(double slots, double gathered) {
+  list_.first_ = AlignedArray<Index>::for_overwrite(static_cast<std::size_t>(slots));
+  list_.mask_ = AlignedArray<std::uint8_t>::for_overwrite(static_cast<std::size_t>(slots));
+  list_.index_ = AlignedArray<Index>::for_overwrite(static_cast<std::size_t>(gathered) * lanes);
 }
 
-void PairListBuilder::fill(const detail::EncodedSlices& from, Index s, std::int64_t slot, std::int64_t block,
-                           PairList& list) {
-  std::vector<Index>
-      gathered;  // slot by slot; one slot more than needed takes what the last stores leave over
-  const Index* id = from.id.data();
-  const std::uint8_t* mask = from.mask.data();
+detail::EncodedSlices PairListBuilder::Queue::take() {
+  if (spare_.empty()) return {};
+  detail::EncodedSlices slices = std::move(spare_.back());
+  spare_.pop_back();
+  slices.clear();
+  return slices;
+}
+
+void PairListBuilder::Queue::put(Index chunk, detail::EncodedSlices slices) {
+  builder_.measure(chunk, slices);
+  waiting_.emplace_back(chunk, std::move(slices));
+  std::erase_if(waiting_, [&](auto& waiting) {
+    const Place place = [&] {
+      const std::lock_guard lock(builder_.mutex_);
+      return builder_.places_[static_cast<std::size_t>(waiting.first)];
+    }();
+    if (place.slot < 0 || !builder_.fits(place)) return false;
+    builder_.fill(waiting.second, waiting.first);
+    spare_.push_back(std::move(waiting.second));
+    return true;
+  });
+}
+
+void PairListBuilder::Queue::close() {
+  const std::lock_guard lock(builder_.mutex_);
+  for (auto& waiting : waiting_) builder_.late_.push_back(std::move(waiting));
+  waiting_.clear();
+}
+
+void PairListBuilder::measure(Index chunk, const detail::EncodedSlices& slices) {
+  const std::lock_guard lock(mutex_);
+  Place& own = places_[static_cast<std::size_t>(chunk)];
+  own.slots = static_cast<std::int64_t>(slices.mask.size());
+  own.blocks = static_cast<std::int64_t>(slices.index.size()) / lanes;
+  pairs_ += slices.pairs;
+  for (; placed_ < chunks() && places_[static_cast<std::size_t>(placed_)].slots >= 0; ++placed_) {
+    Place& place = places_[static_cast<std::size_t>(placed_)];
+    place.slot = slots_;
+    place.block = blocks_;
+    slots_ += place.slots;
+    blocks_ += place.blocks;
+  }
+}
+
+bool PairListBuilder::fits(const Place& place) const {
+  return place.slot + place.slots <= list_.slots() &&
+         (place.block + place.blocks) * lanes <= static_cast<std::int64_t>(list_.index_.size());
+}
+
+PairList PairListBuilder::build() {
+  check_slots(static_cast<double>(slots_), particles_);
+  const std::int64_t before = list_.slots(), index_before = static_cast<std::int64_t>(list_.index_.size());
+  enlarge(list_.first_, before, slots_);
+  enlarge(list_.mask_, before, slots_);
+  enlarge(list_.index_, index_before, blocks_ * lanes);
+  detail::ParallelError error;
+#pragma omp parallel for schedule(static) if (detail::worth_threads(particles_))
+  for (std::size_t i = 0; i < late_.size(); ++i)
+    error.guard([&] {
+      const detail::EncodedSlices chunk = std::move(late_[i].second);
+      fill(chunk, late_[i].first);
+    });
+  error.rethrow();
+  list_.first_.truncate(static_cast<std::size_t>(slots_));
+  list_.mask_.truncate(static_cast<std::size_t>(slots_));
+  list_.index_.truncate(static_cast<std::size_t>(blocks_) * lanes);
+  list_.slice_begin_[static_cast<std::size_t>(slices_)] = slots_;
+  list_.pairs_ = pairs_;
+  return std::move(list_);
+}
+
+void PairListBuilder::fill(const detail::EncodedSlices& from, Index chunk) {
+  std::int64_t slot = places_[static_cast<std::size_t>(chunk)].slot,
+               block = places_[static_cast<std::size_t>(chunk)].block;
+  Index s = begin_slice(chunk);
+  std::copy(from.mask.begin(), from.mask.end(), list_.mask_.data() + slot);
+  std::copy(from.index.begin(), from.index.end(), list_.index_.data() + block * lanes);
+  const Index* first = from.first.data();
   for (const auto& slice : from.slices) {
-    list.slice_begin_[static_cast<std::size_t>(s)] = slot;
-    std::copy_n(id, slice.contiguous, list.first_.data() + slot);
-    std::copy_n(mask, slice.contiguous, list.mask_.data() + slot);
-    id += slice.contiguous;
-    mask += slice.contiguous;
+    list_.slice_begin_[static_cast<std::size_t>(s)] = slot;
+    std::copy_n(first, slice.contiguous, list_.first_.data() + slot);
+    first += slice.contiguous;
     slot += slice.contiguous;
-    list.slice_gathered_[static_cast<std::size_t>(s)] = slot;
-
-    if (gathered.size() < static_cast<std::size_t>(slice.gathered + 1) * lanes)
-      gathered.resize(2 * static_cast<std::size_t>(slice.gathered + 1) * lanes);
-    std::int64_t end[lanes] = {};
-    Index* const out = gathered.data();
-    for (std::int64_t i = 0; i < slice.loose; ++i) {
-      const unsigned m = mask[i];
-      for (int l = 0; l < lanes; ++l) {  // without branches: they could not be predicted
-        out[end[l] * lanes + l] = id[i];
-        end[l] += m >> l & 1;
-      }
-    }
-    id += slice.loose;
-    mask += slice.loose;
-
-    std::uint8_t* const masks = list.mask_.data() + slot;
-    std::fill_n(masks, slice.gathered, std::uint8_t{0xff});
-    for (int l = 0; l < lanes; ++l)
-      for (std::int64_t g = end[l]; g < slice.gathered; ++g) {
-        out[g * lanes + l] = s * lanes + l;
-        masks[g] = static_cast<std::uint8_t>(masks[g] & ~(1u << l));
-      }
-    std::copy_n(out, slice.gathered * lanes, list.index_.data() + block * lanes);
-    for (std::int64_t g = 0; g < slice.gathered; ++g)
-      list.first_[static_cast<std::size_t>(slot + g)] = static_cast<Index>(block + g);
-    slot += slice.gathered;
-    block += slice.gathered;
+    list_.slice_gathered_[static_cast<std::size_t>(s)] = slot;
+    for (Index g = 0; g < slice.gathered; ++g)
+      list_.first_[static_cast<std::size_t>(slot++)] = static_cast<Index>(block++);
     ++s;
   }
 }

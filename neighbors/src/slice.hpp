@@ -14,8 +14,7 @@ struct Slice {
   double x[D][lanes];  // NaN in unused lanes: no comparison holds there
   double r2[lanes];    // radius squared
   double radius[lanes];
-  double reach;               // the largest radius
-  double middle, per_length;  // of the first coordinate, from first lane to last; lanes a unit of it
+  double reach;  // the largest radius
 };
 
 // Radii, one for all or one a particle.
@@ -39,8 +38,6 @@ Slice<D> make_slice(const PointView<D>& points, const Radii& radii, Index s) {
     slice.r2[l] = slice.radius[l] * slice.radius[l];
   }
   slice.reach = *std::max_element(slice.radius, slice.radius + lanes);
-  slice.middle = (slice.x[0][0] + slice.x[0][lanes - 1]) / 2;
-  slice.per_length = (lanes - 1) / (slice.x[0][lanes - 1] - slice.x[0][0]);
   return slice;
 }
 

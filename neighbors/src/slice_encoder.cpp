@@ -1,5 +1,9 @@
 #include "slice_encoder.hpp"
 
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
 #include "lanes.hpp"
 
 namespace taut::detail {
@@ -10,121 +14,139 @@ namespace {
 // with four on curve-ordered clouds, a third with three), more make jittered lattices gather.
 constexpr int worthwhile_lanes = 5;
 
-inline std::uint64_t load_word(const std::uint8_t* p) {
-  std::uint64_t w;
-  std::memcpy(&w, p, sizeof w);
-  return w;
-}
+constexpr std::size_t chunk = bytes;
 
-// Byte l is all of bit l of the mask, in its place.
-inline std::uint64_t diagonal(std::uint64_t mask) { return (mask * 0x0101010101010101) & 0x8040201008040201; }
+template <class T>
+void reserve(std::vector<T>& v, std::size_t size) {
+  if (v.size() < size) v.resize(2 * size);
+}
 
 }  // namespace
 
-void SliceEncoder::end_slice() {
-  const std::size_t before = slice_begin_;
+void SliceEncoder::encode(Index own, const Index* slices, const std::uint64_t* matches, std::size_t count,
+                          EncodedSlices& out) {
   EncodedSlices::Slice slice;
-  slice.contiguous = static_cast<std::int64_t>(entries_.count - before);
-  slice.loose = static_cast<std::int64_t>(loose_.count);
-  for (std::size_t i = before; i < entries_.count; ++i) sums_.pairs += mask_tables.count[entries_.mask[i]];
+  lay_out(slices, matches, count);
+  if (!pick_contiguous(out, slice.contiguous)) slice.gathered = gather(own, collect_loose(), out);
+  out.slices.push_back(slice);
+}
 
-  std::int64_t per_lane[lanes] = {};
-  for (std::size_t i = 0; i < loose_.count;) {
-    std::uint64_t counters = 0;  // one byte a lane
-    for (const std::size_t end = std::min(i + 255, loose_.count); i < end; ++i)
-      counters += mask_tables.spread[loose_.mask[i]];
-    for (int l = 0; l < lanes; ++l) per_lane[l] += counters >> (8 * l) & 0xff;
+void SliceEncoder::lay_out(const Index* slices, const std::uint64_t* matches, std::size_t count) {
+  const std::size_t most = 2 * count;
+  reserve(slice_, most + chunk / lanes);
+  if (bytes_.size() < most * lanes + 2 * margin) {
+    bytes_.resize(2 * (most * lanes + 2 * margin));
+    contiguous_.resize(bytes_.size());
   }
-  for (const std::int64_t n : per_lane) {
-    slice.gathered = std::max(slice.gathered, n);
-    sums_.pairs += n;
+  Index* const to = slice_.data();
+  std::uint8_t* const data = bytes_.data() + margin;
+  std::size_t w = 0;
+  Index before = -2;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Index s = slices[i];
+    // The gap, to be overwritten where there is none.
+    to[w] = s - 1;
+    std::memset(data + w * lanes, 0, lanes);
+    w += s != before + 1;
+    to[w] = s;
+    std::memcpy(data + w * lanes, matches + i, lanes);
+    ++w;
+    before = s;
   }
-  sums_.slots += slice.contiguous + slice.gathered;
-  sums_.blocks += slice.gathered;
-  sums_.slices.push_back(slice);
-
-  entries_.reserve(loose_.count);
-  std::copy_n(loose_.id.data(), loose_.count, entries_.id.data() + entries_.count);
-  std::copy_n(loose_.mask.data(), loose_.count, entries_.mask.data() + entries_.count);
-  entries_.count += loose_.count;
-  slice_begin_ = entries_.count;
-  loose_.count = 0;
+  words_ = w;
+  std::memset(data + w * lanes, 0, margin);
 }
 
 // Lane l pairing with b is lane l of a contiguous slot whose lane 0 is at b - l. So the mask of the slot at f
-// has its bit l from the byte of particle f + l: a diagonal of the bit matrix, taken for 32 values of f at
-// once.
-void SliceEncoder::encode_masks(std::uint8_t* data, std::int64_t begin, std::int64_t end) {
-  constexpr std::int64_t chunk = sizeof(Bytes32);
-  entries_.reserve(static_cast<std::size_t>(end - begin) + lanes);
-  const std::size_t before = entries_.count;
-  const auto within = [](std::int64_t bytes) {  // bits of a chunk that belong to the run
-    return bytes >= chunk ? ~std::uint32_t{0} : (std::uint32_t{1} << bytes) - 1;
-  };
+// has its bit l from the byte of particle f + l: a diagonal of the bit matrix, taken for a pack of values
+// of f at once. Returns whether no pairs are left over.
+bool SliceEncoder::pick_contiguous(EncodedSlices& out, Index& count) {
+  const std::size_t length = words_ * lanes;
+  const std::uint8_t* const data = bytes_.data() + margin;
+  std::uint8_t* const contiguous = contiguous_.data() + margin;
+  const Index* const slice = slice_.data();
+  Index* first = out.first.room(length + margin);
+  std::uint8_t* mask = out.mask.room(length + margin);
+  std::uint8_t* const before = mask;
+  const bool at_begin = words_ > 0 && slice_[0]<0, at_end = words_> 0 && slice_[words_ - 1] == slices_ - 1;
 
   bool complete = true;
-  for (std::int64_t f = begin - lanes; f < end; f += chunk) {
-    Bytes32 slots = splat_bytes(0);
-    for (int l = 0; l < lanes; ++l) slots = slots | (load_bytes(data + f + l) & splat_bytes(1 << l));
-    std::uint32_t picked = at_least<worthwhile_lanes>(slots) & within(end - f);
-    complete = complete && picked == (nonzero(slots) & within(end - f));
-    std::uint8_t slot[chunk];
-    std::memcpy(slot, &slots, sizeof slot);
-    for (; picked; picked &= picked - 1) {
-      const int place = std::countr_zero(picked);
-      const bool addressable = f + place >= 0 && f + place + lanes <= padded_;
-      entries_.put(f + place, slot[place], addressable);
-      complete = complete && addressable;
+  for (std::size_t p = 0; p < length; p += chunk) {
+    Bytes slots = splat_bytes(0);
+#pragma GCC unroll 8
+    for (int l = 0; l < lanes; ++l) slots = slots | (load_bytes(data + p + l) & splat_bytes(1 << l));
+    Bytes worthwhile = with_bits<worthwhile_lanes>(slots);
+    store_bytes(worthwhile, contiguous + p);
+    // Slots that reach beyond the particles cannot be addressed.
+    const bool begins = at_begin && p == 0, ends = at_end && p + chunk > length - lanes;
+    if (begins || ends) {
+      if (begins) std::memset(contiguous, 0, lanes);
+      if (ends) std::memset(contiguous + length - lanes + 1, 0, lanes - 1);
+      worthwhile = load_bytes(contiguous + p);
     }
+    const std::uint64_t picked = nonzero(worthwhile);
+    complete = complete && picked == nonzero(slots);
+    append_picked(worthwhile, picked, slice + p / lanes, mask, first);
   }
-  const auto clear = [&] { std::memset(data + begin, 0, static_cast<std::size_t>(end - begin)); };
-  if (complete) return clear();
-
-  for (std::size_t i = before; i < entries_.count; ++i) {
-    std::uint8_t* at = data + entries_.id[i];
-    const std::uint64_t word = load_word(at) & ~diagonal(entries_.mask[i]);
-    std::memcpy(at, &word, sizeof word);
-  }
-  loose_.reserve(static_cast<std::size_t>(end - begin));
-  for (std::int64_t b = begin; b < end; b += chunk)
-    for (std::uint32_t left = nonzero(load_bytes(data + b)) & within(end - b); left; left &= left - 1) {
-      const int place = std::countr_zero(left);
-      loose_.put(b + place, data[b + place], true);
-    }
-  clear();
+  std::int64_t pairs = 0;
+  for (const std::uint8_t* m = before; m < mask; ++m) pairs += mask_tables.count[*m];
+  out.pairs += pairs;
+  count = static_cast<Index>(mask - before);
+  out.first.grow_to(first);
+  out.mask.grow_to(mask);
+  return complete;
 }
 
-void SliceEncoder::encode_diagonals(const std::uint8_t* masks, std::int64_t begin, std::int64_t end) {
-  if (begin >= end) return;
-  const auto most = static_cast<std::size_t>(end - begin) + lanes;
-  entries_.reserve(most);
-  loose_.reserve(most);
-  Entries::Writer slots(entries_), loose(loose_);
-  bool complete = true;
-  for (std::int64_t f = begin; f < end; ++f) {
-    const bool worthwhile = mask_tables.count[masks[f]] >= worthwhile_lanes;
-    slots.put(f, masks[f], worthwhile);
-    complete &= worthwhile || masks[f] == 0;
+// The particles of pairs that no contiguous slot holds.
+std::size_t SliceEncoder::collect_loose() {
+  const std::size_t length = words_ * lanes;
+  const std::uint8_t* const data = bytes_.data() + margin;
+  const std::uint8_t* const contiguous = contiguous_.data() + margin;
+  reserve(loose_, length + margin);
+  reserve(loose_mask_, length + margin);
+  const Index* const slice = slice_.data();
+  Index* id = loose_.data();
+  std::uint8_t* mask = loose_mask_.data();
+  for (std::size_t p = 0; p < length; p += chunk) {
+    Bytes held = splat_bytes(0);
+#pragma GCC unroll 8
+    for (int l = 0; l < lanes; ++l) held = held | (load_bytes(contiguous + p - l) & splat_bytes(1 << l));
+    const Bytes left = without(load_bytes(data + p), held);
+    const std::uint64_t which = nonzero(left);
+    append_picked(left, which, slice + p / lanes, mask, id);
   }
-  if (complete) return;
-
-  std::uint64_t pending = 0;  // byte i: lanes that pair with particle f + i but belong to no slot
-  for (std::int64_t f = begin; f < end; ++f) {
-    const bool worthwhile = mask_tables.count[masks[f]] >= worthwhile_lanes;
-    pending |= diagonal(worthwhile ? 0 : masks[f]);
-    loose.put(f, pending & 0xff, (pending & 0xff) != 0);
-    pending >>= 8;
-  }
-  for (std::int64_t b = end; pending; ++b, pending >>= 8) loose.put(b, pending & 0xff, (pending & 0xff) != 0);
+  std::memset(mask, 0, lanes + lanes);
+  return static_cast<std::size_t>(id - loose_.data());
 }
 
-EncodedSlices SliceEncoder::take() {
-  EncodedSlices result = std::move(sums_);
-  result.id.assign(entries_.id.data(), entries_.id.data() + entries_.count);
-  result.mask.assign(entries_.mask.data(), entries_.mask.data() + entries_.count);
-  sums_ = {};
-  entries_.count = slice_begin_ = 0;
-  return result;
+// Slot g of a slice holds the neighbour g of every lane; lanes that have fewer, their own particle. Returns
+// the number of slots.
+Index SliceEncoder::gather(Index own, std::size_t loose, EncodedSlices& out) {
+  const std::size_t stride = loose + 4 * lanes;
+  reserve(dealt_, lanes * stride);
+  std::size_t count[lanes];
+  deal(loose_.data(), loose_mask_.data(), loose, dealt_.data(), stride, count);
+  const std::size_t slots = *std::max_element(count, count + lanes);
+  std::uint8_t* const masks = out.mask.room(slots);
+  const std::size_t least = *std::min_element(count, count + lanes);
+  std::memset(masks, 0xff, least);
+  for (std::size_t g = least; g < slots; ++g) {
+    unsigned m = 0;
+    for (int l = 0; l < lanes; ++l) m |= unsigned{g < count[l]} << l;
+    masks[g] = static_cast<std::uint8_t>(m);
+  }
+  for (int l = 0; l < lanes; ++l) {
+    out.pairs += static_cast<std::int64_t>(count[l]);
+    Index* const rest = dealt_.data() + static_cast<std::size_t>(l) * stride + count[l];
+    const auto fill = [&](std::size_t i) { std::fill_n(rest + i, 2 * lanes, own * lanes + l); };
+    fill(0);  // nearly always enough, hence no loop that ends unpredictably
+    for (std::size_t i = 2 * lanes; count[l] + i < slots; i += 2 * lanes) fill(i);
+  }
+  out.mask.grow_to(masks + slots);
+  Index* const to = out.index.room((slots + lanes) * lanes);
+  for (std::size_t g = 0; g < slots; g += lanes) transpose8(dealt_.data() + g, stride, to + g * lanes, lanes);
+  out.index.grow_to(to + slots * lanes);
+  return static_cast<Index>(slots);
 }
 
 }  // namespace taut::detail

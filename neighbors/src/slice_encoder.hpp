@@ -1,81 +1,62 @@
 #pragma once
-// From the lane masks of a slice to what its slots will hold.
+// From the lane masks of a slice to its slots.
 
 #include <cstdint>
+#include <taut/core/types.hpp>
 #include <vector>
 
-#include "lane_masks.hpp"
+#include "buffer.hpp"
 
 namespace taut::detail {
 
-// Consecutive slices in compressed form. A slice's entries: first its contiguous slots (the neighbour of lane
-// 0 and the mask), then the particles to be gathered, ascending, each with the mask of the lanes that pair
-// with it.
+// Consecutive slices. A slice's slots: first the contiguous ones, then the gathered.
 struct EncodedSlices {
   struct Slice {
-    std::int64_t contiguous = 0;  // entries that are contiguous slots
-    std::int64_t loose = 0;       // entries to be gathered
-    std::int64_t gathered = 0;    // slots that these fill: the most any lane has
+    Index contiguous = 0, gathered = 0;
   };
   std::vector<Slice> slices;
-  std::vector<Index> id;
-  std::vector<std::uint8_t> mask;
-  std::int64_t pairs = 0, slots = 0, blocks = 0;  // sums: directed pairs, slots, gathered slots
+  Buffer<Index> first;        // neighbour of lane 0, contiguous slots only
+  Buffer<std::uint8_t> mask;  // all slots
+  Buffer<Index> index;        // the blocks of gathered slots
+  std::int64_t pairs = 0;
+
+  // Keeps the memory.
+  void clear() {
+    slices.clear();
+    first.clear();
+    mask.clear();
+    index.clear();
+    pairs = 0;
+  }
 };
 
 class SliceEncoder {
  public:
   explicit SliceEncoder(Index particles)
-      : padded_(static_cast<std::int64_t>(padded(static_cast<std::size_t>(particles)))) {}
+      : slices_(static_cast<Index>(padded(static_cast<std::size_t>(particles)) / lanes)) {}
 
-  // Slots of the next slice, in any number of parts that come in ascending order of the particles with a
-  // slice between them at least; `end_slice` ends it. From a byte for each particle b in [begin, end), the
-  // lanes that pair with it; they are cleared. Up to LaneMasks::margin bytes around them are read.
-  void encode_masks(std::uint8_t* masks, std::int64_t begin, std::int64_t end);
-  // From a byte for each contiguous slot whose lane 0 pairs with f in [begin, end). All can be addressed.
-  void encode_diagonals(const std::uint8_t* masks, std::int64_t begin, std::int64_t end);
-  void end_slice();
-  // All since the last take.
-  EncodedSlices take();
-  std::int64_t slots() const { return sums_.slots; }
+  // Appends slice `own` to `out`, from `count` slices in ascending order and for each of their particles a
+  // byte: the lanes that pair with it.
+  void encode(Index own, const Index* slices, const std::uint64_t* matches, std::size_t count,
+              EncodedSlices& out);
 
  private:
-  struct Entries {
-    std::vector<Index> id;
-    std::vector<std::uint8_t> mask;
-    std::size_t count = 0;
-    void reserve(std::size_t more) {
-      if (id.size() < count + more) {
-        id.resize(2 * (count + more));
-        mask.resize(id.size());
-      }
-    }
-    void put(std::int64_t i, std::uint64_t m, bool keep) {
-      id[count] = static_cast<Index>(i);
-      mask[count] = static_cast<std::uint8_t>(m);
-      count += keep;
-    }
-    // Puts entries for which there is room, itself in registers: the bytes that it stores could else be any
-    // of an Entries' own.
-    struct Writer {
-      explicit Writer(Entries& e) : entries(e), id(e.id.data()), mask(e.mask.data()), count(e.count) {}
-      ~Writer() { entries.count = count; }
-      void put(std::int64_t i, std::uint64_t m, bool keep) {
-        id[count] = static_cast<Index>(i);
-        mask[count] = static_cast<std::uint8_t>(m);
-        count += keep;
-      }
-      Entries& entries;
-      Index* id;
-      std::uint8_t* mask;
-      std::size_t count;
-    };
-  };
+  void lay_out(const Index* slices, const std::uint64_t* matches, std::size_t count);
+  bool pick_contiguous(EncodedSlices& out, Index& picked);
+  std::size_t collect_loose();
+  Index gather(Index own, std::size_t loose, EncodedSlices& out);
 
-  std::int64_t padded_;
-  Entries entries_, loose_;
-  std::size_t slice_begin_ = 0;  // in entries_
-  EncodedSlices sums_;
+  Index slices_;
+  // Of the runs of slices, each after a gap of one slice: the slice of each word, and the bytes, `margin`
+  // more of them at both ends.
+  static constexpr std::size_t margin = 128;
+  std::size_t words_ = 0;
+  std::vector<Index> slice_;
+  std::vector<std::uint8_t> bytes_;
+  std::vector<std::uint8_t> contiguous_;  // masks of the contiguous slots that begin at each byte
+  std::vector<Index> loose_;              // particles to be gathered,
+  std::vector<std::uint8_t> loose_mask_;  // and the lanes that pair with them
+  std::vector<Index> dealt_;              // neighbours of each lane
 };
 
 }  // namespace taut::detail

@@ -1,5 +1,5 @@
 #pragma once
-// A set of slices that is filled in any order and read back in ascending runs.
+// A set of slices that is filled in any order and read back in ascending order.
 
 #include <algorithm>
 #include <bit>
@@ -20,7 +20,7 @@ class SliceSet {
  public:
   explicit SliceSet(Index particles)
       : slices_(padded(static_cast<std::size_t>(particles)) / lanes / 64 + 1),
-        groups_(slices_.size() + sizeof(Bytes32)) {}
+        groups_(slices_.size() + sizeof(Bytes)) {}
 
   void insert(const Index* slices, std::size_t count) {
     std::size_t lowest = lowest_, highest = highest_;
@@ -37,35 +37,18 @@ class SliceSet {
     highest_ = highest;
   }
 
-  // Calls visit(begin, end) for the runs of slices in the set, in ascending order, and empties it. Runs with
-  // at most `closed_gap` slices between them count as one.
-  template <class Visit>
-  void drain(std::size_t closed_gap, Visit&& visit) {
-    std::size_t begin = 0, end = 0;  // pending run
-    const auto flush = [&] {
-      if (begin < end) visit(static_cast<Index>(begin), static_cast<Index>(end));
-    };
-    for (std::size_t v = lowest_; v <= highest_; v += sizeof(Bytes32)) {
-      std::uint32_t groups = nonzero(load_bytes(groups_.data() + v));
+  // Appends the slices of the set in ascending order, and empties it.
+  void drain(std::vector<Index>& to) {
+    for (std::size_t v = lowest_; v <= highest_; v += sizeof(Bytes)) {
+      std::uint64_t groups = nonzero(load_bytes(groups_.data() + v));
       if (!groups) continue;
-      std::memset(groups_.data() + v, 0, sizeof(Bytes32));
+      std::memset(groups_.data() + v, 0, sizeof(Bytes));
       for (; groups; groups &= groups - 1) {
         const std::size_t g = v + static_cast<std::size_t>(std::countr_zero(groups));
-        std::uint64_t bits = std::exchange(slices_[g], 0);
-        while (bits) {
-          const int first = std::countr_zero(bits);
-          const int length = std::countr_one(bits >> first);
-          const std::size_t start = g * 64 + static_cast<std::size_t>(first);
-          if (begin == end || start > end + closed_gap) {
-            flush();
-            begin = start;
-          }
-          end = start + static_cast<std::size_t>(length);
-          bits &= first + length == 64 ? 0 : ~std::uint64_t{0} << (first + length);
-        }
+        for (std::uint64_t bits = std::exchange(slices_[g], 0); bits; bits &= bits - 1)
+          to.push_back(static_cast<Index>(g * 64 + static_cast<std::size_t>(std::countr_zero(bits))));
       }
     }
-    flush();
     lowest_ = none;
     highest_ = 0;
   }

@@ -1,0 +1,47 @@
+#pragma once
+// A vector for numbers that are written without being initialised first.
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+
+namespace taut::detail {
+
+template <class T>
+class Buffer {
+ public:
+  T* data() { return data_.get(); }
+  const T* data() const { return data_.get(); }
+  std::size_t size() const { return size_; }
+  T* begin() { return data(); }
+  T* end() { return data() + size_; }
+  const T* begin() const { return data(); }
+  const T* end() const { return data() + size_; }
+  T& operator[](std::size_t i) { return data_.get()[i]; }
+  const T& operator[](std::size_t i) const { return data_.get()[i]; }
+  void clear() { size_ = 0; }
+
+  // Room for `more` beyond the size, where they may be written before `grow` makes them part of it.
+  T* room(std::size_t more) {
+    if (size_ + more > capacity_) {
+      capacity_ = 2 * (size_ + more);
+      auto larger = std::make_unique_for_overwrite<T[]>(capacity_);
+      std::copy_n(data_.get(), size_, larger.get());
+      data_ = std::move(larger);
+    }
+    return end();
+  }
+  void grow_to(const T* end) { size_ = static_cast<std::size_t>(end - data()); }
+  // What was there is lost where it has to grow.
+  void resize(std::size_t size) {
+    size_ = 0;
+    room(size);
+    size_ = size;
+  }
+
+ private:
+  std::unique_ptr<T[]> data_;
+  std::size_t size_ = 0, capacity_ = 0;
+};
+
+}  // namespace taut::detail
