@@ -2,6 +2,8 @@
 // A body with its pair list and operator, and a body with its formulation, laid open for the tests of the
 // core.
 
+#include <doctest/doctest.h>
+
 #include <array>
 #include <cmath>
 #include <memory>
@@ -80,6 +82,28 @@ struct Bare {
     return f;
   }
 };
+
+/// Checks the forces on every `stride`-th particle against central differences of the strain energy.
+template <int D>
+void check_derivative(Bare<D>& body, double dx, Index stride) {
+  const auto forces = body.forces();
+  double scale = 0;
+  for (const auto& f : forces) scale = std::max(scale, f.norm());
+  const double step = 1e-5 * dx;
+  for (Index i = 0; i < body.n(); i += stride)
+    for (int d = 0; d < D; ++d) {
+      double& x = body.particles.x.component(d)[i];
+      const double at = x;
+      x = at + step;
+      const double more = body.formulation->strain_energy();
+      x = at - step;
+      const double less = body.formulation->strain_energy();
+      x = at;
+      const double error =
+          std::abs(-(more - less) / (2 * step) - forces[static_cast<std::size_t>(i)][d]) / scale;
+      CHECK(error < 1e-8);
+    }
+}
 
 /// A box of n spacings of 1 / n along each axis but the first, which is half as long again: no cube hides a
 /// swapped axis.

@@ -121,22 +121,6 @@ TEST_CASE_TEMPLATE("forces are minus the derivative of the strain energy", Dimen
         Bare<D> body(cloud, make_material<D>(name, {.E = 1e6, .nu = 0.3, .density = 1000}),
                      {.operators = operators, .pair_precision = precision});
         body.place([](const Vec<D>& X) { return Vec<D>(X + wavy<D>(X, 0.05)); });
-        const auto forces = body.forces();
-        double scale = 0;
-        for (const auto& f : forces) scale = std::max(scale, f.norm());
-        const double step = 1e-5 * cloud.dx;
-        for (Index i = 0; i < body.n(); i += D == 3 ? 37 : 3)
-          for (int d = 0; d < D; ++d) {
-            double& x = body.particles.x.component(d)[i];
-            const double at = x;
-            x = at + step;
-            const double more = body.formulation->strain_energy();
-            x = at - step;
-            const double less = body.formulation->strain_energy();
-            x = at;
-            const double error =
-                std::abs(-(more - less) / (2 * step) - forces[static_cast<std::size_t>(i)][d]) / scale;
-            CHECK(error < 1e-8);
-          }
+        check_derivative(body, cloud.dx, D == 3 ? 37 : 3);
       }
 }
