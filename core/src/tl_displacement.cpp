@@ -109,6 +109,12 @@ class TlDisplacement final : public Formulation<D> {
     if (op_.F0.empty()) return;
     for (int k = 0; k < D * D; ++k) F[k] += load(op_.F0.component(k) + s * lanes);
   }
+  // What the force pass reads of neighbours.
+  void mirror_tensors() {
+    if (p_.mirror.empty()) return;
+    p_.mirror.tensors(Q_);
+    if (control_) p_.mirror.tensors(control_->deformation());
+  }
   template <class Payload>
   void gradient_pass(const Payload& payload);
   template <class Payload>
@@ -171,6 +177,7 @@ void TlDisplacement<D>::gradient_pass(const Payload& payload) {
             for (int j = 1; j < D; ++j) q += load(P + (d * D + j) * chunk) * of.matrix(j * D + e);
             store(Q[d * D + e] + i, q * Vi);
           }
+        if (control_) control_->add_stress(s, x, of, Q_);
       }
     }
 #pragma omp critical
@@ -198,6 +205,7 @@ Index TlDisplacement<D>::first_inverted(Index first, Index last, const double* F
 template <int D>
 template <class Payload>
 void TlDisplacement<D>::force_pass(const Payload& payload) {
+  const Columns<D> x(p_.x);
   const Columns<D * D> Q(Q_);
   const double* m = p_.m.component(0);
   double* a[D];
@@ -207,7 +215,7 @@ void TlDisplacement<D>::force_pass(const Payload& payload) {
     Pack force[D];
     prefetch_neighbours(pairs_, s, Q);
     force_of_slice<D>(s, pairs_, payload, Q, {op_, s}, force);
-    if (control_) control_->add_to(s, p_.x, force);
+    if (control_) control_->add_to(s, x, force);
     const Index i = s * lanes;
     const Pack per_mass = 1 / load(m + i);
     for (int d = 0; d < D; ++d) {
@@ -224,10 +232,7 @@ void TlDisplacement<D>::update_accelerations(double t) {
   if (!p_.mirror.empty()) p_.mirror.positions(p_.x);
   with_payload<D>(op_, pairs_, p_.X, [&](const auto& payload) {
     gradient_pass(payload);
-    if (!p_.mirror.empty()) {
-      p_.mirror.tensors(Q_);
-      if (control_) p_.mirror.tensors(control_->deformation());
-    }
+    mirror_tensors();
     force_pass(payload);
   });
   this->finish_accelerations(t);
@@ -243,11 +248,13 @@ double TlDisplacement<D>::strain_energy() const {
   for (Index c = 0; c < groups_.chunks(); ++c) {
     alignas(64) double F[D * D * chunk], P[D * D * chunk], e[chunk];
     const Index first = groups_.first_slice(c), last = groups_.last_slice(c);
+    alignas(64) double of_control[chunk] = {};
     for (Index s = first; s < last; ++s) {
       Pack f[D * D];
       gradient(s, p_.x, f);
       add_offset(s, f);
       for (int k = 0; k < D * D; ++k) store(F + k * chunk + (s - first) * lanes, f[k]);
+      if (control_) store(of_control + (s - first) * lanes, control_->energy(s, Columns<D>(p_.x), f));
     }
     const int n = (last - first) * lanes;
     groups_.template call<1>(c, e, [&](std::size_t m, double* out) {
@@ -255,7 +262,8 @@ double TlDisplacement<D>::strain_energy() const {
     });
     for (Index i = first * lanes; i < std::min<Index>(last * lanes, p_.n); ++i)
       energy[static_cast<std::size_t>(c)] +=
-          p_.modelled_share(i) * p_.V.component(0)[i] * e[i - first * lanes];
+          p_.modelled_share(i) *
+          (p_.V.component(0)[i] * e[i - first * lanes] + of_control[i - first * lanes]);
   }
   double total = 0;
   for (const double e : energy) total += e;
@@ -264,7 +272,7 @@ double TlDisplacement<D>::strain_energy() const {
 
 // Highest frequency [rad/s] of the body at rest, by power iteration on M^-1 G^T (rho c_p^2) V G: an elastic
 // body has no mode above that of a scalar medium of its pressure-wave modulus, whatever the operator and the
-// cloud.
+// cloud. The control's own stiffness, which does not depend on the state, is in it.
 template <int D>
 double TlDisplacement<D>::largest_frequency() {
   constexpr int iterations = 30;
@@ -307,14 +315,19 @@ double TlDisplacement<D>::largest_frequency() {
             for (int j = 1; j < D; ++j) q += H[d * D + j] * of.matrix(j * D + e);
             store(Q_.component(d * D + e) + s * lanes, q * factor);
           }
+        if (control_) {
+          control_->keep(s, H);
+          control_->add_stress(s, yc, of, Q_);
+        }
       }
-      if (!p_.mirror.empty()) p_.mirror.tensors(Q_);
+      mirror_tensors();
 #pragma omp parallel for schedule(static) if (p_.n > parallel_from)
       for (Index b = 0; b < blocks; ++b) {
         Pack yy = pack(0), ya = pack(0), aa = pack(0);
         for (Index s = b * block; s < std::min((b + 1) * block, groups_.slices()); ++s) {
           Pack force[D];
           force_of_slice<D>(s, pairs_, payload, Q, {op_, s}, force);
+          if (control_) control_->add_to(s, yc, force);
           const Index i = s * lanes;
           const Pack mass = load(m + i);
           for (int d = 0; d < D; ++d) {
@@ -352,7 +365,6 @@ double TlDisplacement<D>::largest_frequency() {
     }
   }
   std::fill(p_.a.flat().begin(), p_.a.flat().end(), 0.0);
-  if (control_) eigenvalue += control_->largest_eigenvalue(pairs_);
   return std::sqrt(eigenvalue);
 }
 

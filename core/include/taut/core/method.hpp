@@ -37,7 +37,9 @@ struct Method {
   /// Conjugate-gradient iterations of the set-up of `compatible` and `antisymmetric` operators.
   int compatible_iterations = 20;
 
-  /// Pairwise zero-energy control of the total Lagrangian forms (Ganzenmueller 2015), 0 = absent.
+  /// Coefficient alpha of the pairwise zero-energy control of `tl_displacement`, 0 = absent: adds the energy
+  ///   1/4 sum_a sum_b k_ab |x_ab - F_a X_ab|^2,   k_ab = alpha E V_a V_b W_ab / |X_ab|^2,
+  /// with the stiffness of Ganzenmueller (2015), to the strain energy. Linear motions have none of it.
   double zero_energy_control = 0;
 
   /// Updated Lagrangian forms: Monaghan viscosity alpha (0 = absent), skin of the pair list over R, whether

@@ -1,23 +1,29 @@
 #pragma once
 /// \file
-/// Pairwise control of zero-energy modes for total Lagrangian forms.
+/// Control of zero-energy modes for total Lagrangian forms by a penalty on pairs.
 
-#include <cmath>
+#include <algorithm>
 #include <taut/core/kernel.hpp>
 #include <taut/core/particles.hpp>
-#include <taut/internal/pair_passes.hpp>
+#include <taut/internal/pair_payload.hpp>
 #include <taut/neighbors/pair_list.hpp>
 
 namespace taut {
 
-/// Penalty on the part of a pair's motion that the gradients do not see (Ganzenmueller, CMAME 286, 2015, eq. 19–21):
-///   f_a -= 1/2 alpha sum_b V_a V_b W_ab / |X_ab|^2 (E_a delta_ab + E_b delta_ba) x_ab / |x_ab|,
-///   delta_ab = (F_a X_ab - x_ab) . x_ab / |x_ab|,
-/// symmetrised as E (1/2 (F_a + F_b) X_ab - x_ab), along the current pair vector: both momenta are kept.
+/// Penalty on the part of neighbours' motion that the gradients do not see, derived from the energy
+///   1/4 sum_a sum_b k_ab |x_ab - F_a X_ab|^2,   k_ab = alpha E V_a V_b W_ab / |X_ab|^2.
+/// The stiffness is that of Ganzenmueller (CMAME 286, 2015, eq. 19-21); his force is the first of the two
+/// parts here, projected on the current pair vector, and is the derivative of no energy. The force on a is
+///   sum_b k_ab (x_ab - 1/2 (F_a + F_b) X_ab)
+/// and what the operator's adjoint makes of V_a P_a = -1/2 sum_b k_ab (x_ab - F_a X_ab) (x) X_ab beside the
+/// material's stress. Without that part, which vanishes only where F is the least squares fit with weights k,
+/// the control feeds motions on irregular clouds. Both momenta are kept as the operator keeps them. The
+/// energy is quadratic in the positions: its stiffness does not depend on the state.
 template <int D>
 class ZeroEnergyControl {
  public:
-  ZeroEnergyControl(const Particles<D>& p, const PairList& pairs, const Kernel& kernel, double h, double alpha)
+  ZeroEnergyControl(const Particles<D>& p, const PairList& pairs, const Kernel& kernel, double h,
+                    double alpha)
       : p_(p), pairs_(pairs), F_(static_cast<std::size_t>(p.total), D * D) {
     stiffness_ = AlignedArray<float>(static_cast<std::size_t>(pairs.slots()) * lanes);
     const double* V = p.V.component(0);
@@ -26,60 +32,85 @@ class ZeroEnergyControl {
       for (Index a = s * lanes; a < std::min<Index>((s + 1) * lanes, p.total); ++a)
         pairs.for_each(a, [&](Index b, std::int64_t k, int lane) {
           const double r = (p.X.template vec<D>(a) - p.X.template vec<D>(b)).norm();
-          const double E = 0.5 * (modulus(a) + modulus(b));
+          // Products that do not tell a from b, to the last bit.
+          const double E = 0.5 * (modulus(a) + modulus(b)), V2 = V[a] * V[b];
           stiffness_[static_cast<std::size_t>(k * lanes + lane)] =
-              static_cast<float>(alpha * E * V[a] * V[b] * kernel.value(r, h) / (r * r));
+              static_cast<float>(alpha * E * V2 * kernel.value(r, h) / (r * r));
         });
   }
 
-  /// Keeps the deformation gradients of a slice for `add_to`.
+  /// Keeps the deformation gradients of a slice for what follows.
   TAUT_INLINE void keep(Index s, const Pack (&F)[D * D]) {
     for (int c = 0; c < D * D; ++c) store(F_.component(c) + s * lanes, F[c]);
   }
   Field& deformation() { return F_; }
 
-  /// Adds the control forces of the eight particles of a slice.
-  void add_to(Index s, const Field& x, Pack (&force)[D]) const {
-    const Columns<D> xs(x), Xs(p_.X);
-    const Columns<D * D> Fs(F_);
-    const Index i = s * lanes;
-    for (std::int64_t k = pairs_.begin(s); k < pairs_.begin(s + 1); ++k) {
-      Index at[lanes];
-      for (int l = 0; l < lanes; ++l) at[l] = pairs_.is_contiguous(s, k) ? pairs_.first(k) + l : pairs_.block(k)[l];
-      Pack X[D], xab[D], r2 = pack(0), along = pack(0);
-      for (int d = 0; d < D; ++d) {
-        X[d] = gather(Xs.c[d], at) - load(Xs.c[d] + i);
-        xab[d] = gather(xs.c[d], at) - load(xs.c[d] + i);
-        r2 += xab[d] * xab[d];
-      }
-      for (int d = 0; d < D; ++d) {
-        Pack error = -xab[d];
-        for (int e = 0; e < D; ++e)
-          error += 0.5 * (load(Fs.c[d * D + e] + i) + gather(Fs.c[d * D + e], at)) * X[e];
-        along += error * xab[d];
-      }
-      // Lanes without a pair have stiffness zero and may sit on themselves.
-      const Pack factor = load(stiffness_.data() + k * lanes) * along / (r2 > 0 ? r2 : pack(1));
-      for (int d = 0; d < D; ++d) force[d] -= factor * xab[d];
+  /// Adds V_a P_a M_a of the eight particles of a slice to Q.
+  void add_stress(Index s, const Columns<D>& x, const SliceCoefficients<D>& of, Field& Q) const {
+    Pack F[D * D], moment[D * D];
+    for (int c = 0; c < D * D; ++c) {
+      F[c] = load(F_.component(c) + s * lanes);
+      moment[c] = pack(0);
     }
+    for_residuals(s, x, F, [&](Pack k, const Pack(&X)[D], const Pack(&residual)[D]) TAUT_INLINE_LAMBDA {
+      for (int d = 0; d < D; ++d) {
+        const Pack along = k * residual[d];
+        for (int e = 0; e < D; ++e) moment[d * D + e] += along * X[e];
+      }
+    });
+    for (int d = 0; d < D; ++d)
+      for (int e = 0; e < D; ++e) {
+        Pack q = moment[d * D] * of.matrix(e);
+        for (int j = 1; j < D; ++j) q += moment[d * D + j] * of.matrix(j * D + e);
+        double* to = Q.component(d * D + e) + s * lanes;
+        store(to, load(to) - 0.5 * q);
+      }
   }
 
-  /// Bound on the largest eigenvalue [1/s^2] that the control adds to M^-1 K (Gershgorin).
-  double largest_eigenvalue(const PairList& pairs) const {
-    double largest = 0;
-    for (Index a = 0; a < p_.n; ++a) {
-      double sum = 0;
-      pairs.for_each(a, [&](Index, std::int64_t k, int lane) {
-        sum += stiffness_[static_cast<std::size_t>(k * lanes + lane)];
-      });
-      largest = std::max(largest, 2 * sum / p_.m.component(0)[a]);
-    }
-    return largest;
+  /// Adds the forces along pairs of the eight particles of a slice. Needs F of its neighbours.
+  void add_to(Index s, const Columns<D>& x, Pack (&force)[D]) const {
+    const Columns<D> X(p_.X);
+    const Columns<D * D> F(F_);
+    const Index i = s * lanes;
+    for_slots(pairs_, s, [&](std::int64_t k, auto&& at) TAUT_INLINE_LAMBDA {
+      const Pack stiffness = load(stiffness_.data() + k * lanes);
+      Pack half[D];
+      for (int e = 0; e < D; ++e) half[e] = 0.5 * (at(X.c[e]) - load(X.c[e] + i));
+      for (int d = 0; d < D; ++d) {
+        Pack residual = at(x.c[d]) - load(x.c[d] + i);
+        for (int e = 0; e < D; ++e) residual -= (load(F.c[d * D + e] + i) + at(F.c[d * D + e])) * half[e];
+        force[d] += stiffness * residual;
+      }
+    });
+  }
+
+  /// Energies [J] of the eight particles of a slice, whose deformation gradients are given.
+  Pack energy(Index s, const Columns<D>& x, const Pack (&F)[D * D]) const {
+    Pack sum = pack(0);
+    for_residuals(s, x, F, [&](Pack k, const Pack(&)[D], const Pack(&residual)[D]) TAUT_INLINE_LAMBDA {
+      for (int d = 0; d < D; ++d) sum += k * residual[d] * residual[d];
+    });
+    return 0.25 * sum;
   }
 
   std::size_t bytes() const { return F_.bytes() + stiffness_.bytes(); }
 
  private:
+  // Calls f(k_ab, X_ab, x_ab - F_a X_ab) for each slot of a slice; k is zero in lanes without a pair.
+  template <class Use>
+  TAUT_INLINE void for_residuals(Index s, const Columns<D>& x, const Pack (&F)[D * D], Use&& f) const {
+    const Columns<D> X(p_.X);
+    const Index i = s * lanes;
+    for_slots(pairs_, s, [&](std::int64_t k, auto&& at) TAUT_INLINE_LAMBDA {
+      Pack Xab[D], residual[D];
+      for (int e = 0; e < D; ++e) Xab[e] = at(X.c[e]) - load(X.c[e] + i);
+      for (int d = 0; d < D; ++d) {
+        residual[d] = at(x.c[d]) - load(x.c[d] + i);
+        for (int e = 0; e < D; ++e) residual[d] -= F[d * D + e] * Xab[e];
+      }
+      f(load(stiffness_.data() + k * lanes), Xab, residual);
+    });
+  }
   double modulus(Index a) const {
     const Index of = a < p_.n ? a : p_.mirror.master(a - p_.n);
     return p_.materials[p_.material[static_cast<std::size_t>(of)]]->parameters().E;
