@@ -1,17 +1,9 @@
-#include <fmt/format.h>
-
-#include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <taut/core/error.hpp>
-#include <taut/core/operators.hpp>
+#include <optional>
 #include <taut/internal/formulations.hpp>
-#include <taut/internal/material_groups.hpp>
-#include <taut/internal/pair_passes.hpp>
-#include <taut/internal/stretch_bounds.hpp>
+#include <taut/internal/total_lagrangian.hpp>
 #include <taut/internal/zero_energy.hpp>
-#include <taut/neighbors/search.hpp>
 
 namespace taut {
 
@@ -20,95 +12,30 @@ namespace {
 /// Displacement-based total Lagrangian form (Kistner 2010 ch. 5; Tran-Duc et al. 2023, 2.3): F from
 /// positions, P from the material, forces by the adjoint of the gradient.
 template <int D>
-class TlDisplacement final : public Formulation<D> {
-  using Base = Formulation<D>;
+class TlDisplacement final : public TotalLagrangian<D> {
+  using Base = TotalLagrangian<D>;
+  using Base::add_offset;
+  using Base::groups_;
+  using Base::materials_;
+  using Base::op_;
   using Base::p_;
+  using Base::pairs_;
+  using Base::Q_;
   static constexpr int chunk = chunk_particles;
 
  public:
-  explicit TlDisplacement(const FormulationSetup<D>& setup)
-      : Base(setup),
-        groups_(p_),
-        kernel_(setup.method.kernel, D),
-        h_(setup.method.support_dx * p_.dx / kernel_.radius_factor()) {
-    for (const auto& material : p_.materials) {
-      const auto* hyperelastic = dynamic_cast<const Hyperelastic<D>*>(material.get());
-      if (!hyperelastic)
-        throw InputError(
-            fmt::format("tl_displacement needs a hyperelastic material; \"{}\" gives stress rates. Valid: "
-                        "linear_elastic, st_venant_kirchhoff, corotated_svk, neo_hookean",
-                        material->name()));
-      materials_.push_back(hyperelastic);
-    }
-    pairs_ = find_pairs<D>(points_of<D>(p_.X, p_.total), setup.method.support_dx * p_.dx,
-                           {search_method(setup.method.neighbours)});
-    op_ = make_operator<D>(setup.method, p_, pairs_, kernel_, h_);
-    Q_ = Field(static_cast<std::size_t>(p_.total), D * D);
+  explicit TlDisplacement(const FormulationSetup<D>& setup) : Base(setup) {
     if (setup.method.zero_energy_control > 0)
-      control_.emplace(p_, pairs_, kernel_, h_, setup.method.zero_energy_control);
-    frequency_ = largest_frequency();
+      control_.emplace(p_, pairs_, this->kernel_, this->h_, setup.method.zero_energy_control);
+    this->frequency_ = largest_frequency();
   }
 
   void update_accelerations(double) override;
-
-  double stable_step() const override {
-    double ratio = 1;
-    for (const auto* material : materials_)
-      ratio =
-          std::max(ratio, material->wave_speed(stretch_.min, stretch_.max, stretch_.J_min, stretch_.J_max) /
-                              material->wave_speed());
-    return 2 / (frequency_ * ratio);
-  }
-
-  Mat<D> deformation_gradient(Index i) const override {
-    Pack F[D * D];
-    gradient(i / lanes, p_.x, F);
-    add_offset(i / lanes, F);
-    Mat<D> value;
-    for (int c = 0; c < D * D; ++c) value(c / D, c % D) = F[c][i % lanes];
-    return value;
-  }
-  Mat<D> first_piola_kirchhoff(Index i) const override {
-    std::array<double, D * D * lanes> block{};
-    const Mat<D> F = deformation_gradient(i);
-    for (int c = 0; c < D * D; ++c)
-      for (int l = 0; l < lanes; ++l) block[static_cast<std::size_t>(c * lanes + l)] = F(c / D, c % D);
-    materials_[p_.material[i]]->stress({lanes, lanes, block.data(), block.data(), nullptr});
-    Mat<D> P;
-    for (int c = 0; c < D * D; ++c) P(c / D, c % D) = block[static_cast<std::size_t>(c * lanes)];
-    return P;
-  }
-  Mat<D> cauchy_stress(Index i) const override {
-    const Mat<D> F = deformation_gradient(i);
-    return first_piola_kirchhoff(i) * F.transpose() / F.determinant();
-  }
   double strain_energy() const override;
-
-  std::int64_t pairs() const override { return pairs_.pairs(); }
-  std::size_t bytes() const override {
-    return pairs_.bytes() + op_.bytes() + Q_.bytes() + (control_ ? control_->bytes() : 0);
-  }
+  std::size_t bytes() const override { return Base::bytes() + (control_ ? control_->bytes() : 0); }
 
  private:
-  // F without F0 of slice s, outside the step's loops.
-  void gradient(Index s, const Field& x, Pack (&F)[D * D]) const {
-    with_payload<D>(op_, pairs_, p_.X, [&](const auto& payload) {
-      gradient_of_slice<D>(s, pairs_, payload, Columns<D>(x), {op_, s}, F);
-    });
-  }
-
   Index first_inverted(Index first, Index last, const double* F) const;
-  // Lanes behind the last particle do as it does, so that they neither break nor widen the bounds.
-  void fill_padding(Index s, Pack (&F)[D * D]) const {
-    const int used = p_.n - s * lanes;
-    for (int l = used; l < lanes; ++l)
-      for (int k = 0; k < D * D; ++k) F[k][l] = F[k][used - 1];
-  }
-
-  TAUT_INLINE void add_offset(Index s, Pack (&F)[D * D]) const {
-    if (op_.F0.empty()) return;
-    for (int k = 0; k < D * D; ++k) F[k] += load(op_.F0.component(k) + s * lanes);
-  }
   // What the force pass reads of neighbours.
   void mirror_tensors() {
     if (p_.mirror.empty()) return;
@@ -121,16 +48,7 @@ class TlDisplacement final : public Formulation<D> {
   void force_pass(const Payload& payload);
   double largest_frequency();
 
-  MaterialGroups groups_;
-  Kernel kernel_;
-  double h_;
-  std::vector<const Hyperelastic<D>*> materials_;
-  PairList pairs_;
-  PairOperator<D> op_;
-  Field Q_;
   std::optional<ZeroEnergyControl<D>> control_;
-  StretchBounds stretch_;
-  double frequency_ = 0;
 };
 
 template <int D>
@@ -155,7 +73,7 @@ void TlDisplacement<D>::gradient_pass(const Payload& payload) {
         prefetch_neighbours(pairs_, s, x);
         gradient_of_slice<D>(s, pairs_, payload, x, {op_, s}, f);
         add_offset(s, f);
-        if ((s + 1) * lanes > p_.n) fill_padding(s, f);
+        if ((s + 1) * lanes > p_.n) this->fill_padding(s, f);
         bad |= ~(mine.add(f) > 0);
         for (int k = 0; k < D * D; ++k) store(F + k * chunk + (s - first) * lanes, f[k]);
         if (control_) control_->keep(s, f);
@@ -183,10 +101,8 @@ void TlDisplacement<D>::gradient_pass(const Payload& payload) {
 #pragma omp critical
     extremes.merge(mine);
   }
-  stretch_ = extremes.bounds();
-  if (inverted < p_.n && !this->failure_)
-    this->failure_ =
-        Failure{p_.x.template vec<D>(inverted).allFinite() ? "J <= 0" : "not a number", inverted};
+  this->stretch_ = extremes.bounds();
+  if (inverted < p_.n) this->fail_inverted(inverted);
 }
 
 // The first particle of a chunk whose J is not positive, or n.
@@ -240,9 +156,7 @@ void TlDisplacement<D>::update_accelerations(double t) {
 
 template <int D>
 double TlDisplacement<D>::strain_energy() const {
-  for (const auto* material : materials_)
-    if (!material->has_energy())
-      throw InputError(fmt::format("material \"{}\" has no stored energy", material->name()));
+  this->need_energies();
   std::vector<double> energy(static_cast<std::size_t>(groups_.chunks()), 0.0);
 #pragma omp parallel for schedule(static) if (p_.n > parallel_from)
   for (Index c = 0; c < groups_.chunks(); ++c) {
@@ -251,8 +165,7 @@ double TlDisplacement<D>::strain_energy() const {
     alignas(64) double of_control[chunk] = {};
     for (Index s = first; s < last; ++s) {
       Pack f[D * D];
-      gradient(s, p_.x, f);
-      add_offset(s, f);
+      this->gradient(s, p_.x, f);
       for (int k = 0; k < D * D; ++k) store(F + k * chunk + (s - first) * lanes, f[k]);
       if (control_) store(of_control + (s - first) * lanes, control_->energy(s, Columns<D>(p_.x), f));
     }
