@@ -2,6 +2,7 @@
 #include <cmath>
 #include <optional>
 #include <taut/internal/formulations.hpp>
+#include <taut/internal/power_iteration.hpp>
 #include <taut/internal/total_lagrangian.hpp>
 #include <taut/internal/zero_energy.hpp>
 
@@ -188,33 +189,16 @@ double TlDisplacement<D>::strain_energy() const {
 // cloud. The control's own stiffness, which does not depend on the state, is in it.
 template <int D>
 double TlDisplacement<D>::largest_frequency() {
-  constexpr int iterations = 30;
-  Field y(static_cast<std::size_t>(p_.total), D);
-  for (Index i = 0; i < p_.n; ++i)
-    for (int d = 0; d < D; ++d) {
-      // Any start with a part in the highest mode will do; a multiplicative hash gives every frequency its
-      // share.
-      const auto hash = static_cast<std::uint32_t>(i * D + d + 1) * 2654435761u;
-      y.component(d)[i] = static_cast<double>(hash) / 4294967296.0 - 0.5;
-    }
   Field stiffness(static_cast<std::size_t>(p_.total), 1);  // V rho c_p^2; zero in the padding
   for (Index i = 0; i < p_.n; ++i) {
     const auto* m = materials_[p_.material[static_cast<std::size_t>(i)]];
     stiffness.component(0)[i] = p_.V.component(0)[i] * m->density() * m->wave_speed() * m->wave_speed();
   }
-
-  const Columns<D> yc(y);
   const Columns<D * D> Q(Q_);
   const double* m = p_.m.component(0);
-  constexpr Index block = 512;  // slices; sums are made block by block, whatever the threads
-  const Index blocks = (groups_.slices() + block - 1) / block;
-  struct Products {
-    double yy = 0, ya = 0, aa = 0;  // in the inner product of the masses
-  };
-  std::vector<Products> partial(static_cast<std::size_t>(blocks));
-  double eigenvalue = 0;
-  for (int it = 0; it < iterations; ++it) {
+  const auto apply = [&](Field& y) {
     if (!p_.mirror.empty()) p_.mirror.vectors(y);
+    const Columns<D> yc(y);
     with_payload<D>(op_, pairs_, p_.X, [&](const auto& payload) {
 #pragma omp parallel for schedule(static) if (p_.n > parallel_from)
       for (Index s = 0; s < groups_.slices(); ++s) {
@@ -235,48 +219,16 @@ double TlDisplacement<D>::largest_frequency() {
       }
       mirror_tensors();
 #pragma omp parallel for schedule(static) if (p_.n > parallel_from)
-      for (Index b = 0; b < blocks; ++b) {
-        Pack yy = pack(0), ya = pack(0), aa = pack(0);
-        for (Index s = b * block; s < std::min((b + 1) * block, groups_.slices()); ++s) {
-          Pack force[D];
-          force_of_slice<D>(s, pairs_, payload, Q, {op_, s}, force);
-          if (control_) control_->add_to(s, yc, force);
-          const Index i = s * lanes;
-          const Pack mass = load(m + i);
-          for (int d = 0; d < D; ++d) {
-            Pack ad = -force[d] / mass, yd = load(yc.c[d] + i);
-            if (i + lanes > p_.n)
-              for (int l = p_.n - i; l < lanes; ++l) ad[l] = yd[l] = 0;
-            yy += mass * yd * yd;
-            ya += mass * yd * ad;
-            aa += mass * ad * ad;
-            store(p_.a.component(d) + i, ad);
-          }
-        }
-        Products sums;
-        for (int l = 0; l < lanes; ++l) {
-          sums.yy += yy[l];
-          sums.ya += ya[l];
-          sums.aa += aa[l];
-        }
-        partial[static_cast<std::size_t>(b)] = sums;
+      for (Index s = 0; s < groups_.slices(); ++s) {
+        Pack force[D];
+        force_of_slice<D>(s, pairs_, payload, Q, {op_, s}, force);
+        if (control_) control_->add_to(s, yc, force);
+        const Pack mass = load(m + s * lanes);
+        for (int d = 0; d < D; ++d) store(p_.a.component(d) + s * lanes, -force[d] / mass);
       }
     });
-    Products sums;
-    for (const Products& part : partial) {
-      sums.yy += part.yy;
-      sums.ya += part.ya;
-      sums.aa += part.aa;
-    }
-    if (sums.yy > 0 && sums.ya > 0) eigenvalue = std::max(sums.ya / sums.yy, std::sqrt(sums.aa / sums.yy));
-    const double scale = sums.aa > 0 ? 1 / std::sqrt(sums.aa) : 0;
-    for (int d = 0; d < D; ++d) {
-      double* to = y.component(d);
-      const double* from = p_.a.component(d);
-#pragma omp parallel for simd schedule(static) if (p_.n > parallel_from)
-      for (Index i = 0; i < p_.n; ++i) to[i] = from[i] * scale;
-    }
-  }
+  };
+  const double eigenvalue = largest_eigenvalue<D>(p_.n, p_.total, p_.m, p_.a, apply);
   std::fill(p_.a.flat().begin(), p_.a.flat().end(), 0.0);
   return std::sqrt(eigenvalue);
 }

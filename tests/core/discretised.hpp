@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <Eigen/Geometry>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -60,9 +61,13 @@ struct Bare {
 
   Bare(const Cloud<D>& cloud, std::shared_ptr<const Material<D>> material, Method m,
        const std::vector<typename MirrorMap<D>::Plane>& planes = {})
+      : Bare(cloud, {std::move(material)}, std::vector<std::uint8_t>(cloud.size(), 0), std::move(m), planes) {
+  }
+  Bare(const Cloud<D>& cloud, const std::vector<std::shared_ptr<const Material<D>>>& materials,
+       const std::vector<std::uint8_t>& material_of, Method m,
+       const std::vector<typename MirrorMap<D>::Plane>& planes = {})
       : method(std::move(m)),
-        particles(assemble<D>(cloud, {std::move(material)}, std::vector<std::uint8_t>(cloud.size(), 0),
-                              planes, method.support_dx * cloud.dx)),
+        particles(assemble<D>(cloud, materials, material_of, planes, method.support_dx * cloud.dx)),
         formulation(make_formulation<D>({particles, constraints, loads, method})) {}
   Bare(const Bare&) = delete;
   Bare& operator=(const Bare&) = delete;
@@ -103,6 +108,26 @@ void check_derivative(Bare<D>& body, double dx, Index stride) {
           std::abs(-(more - less) / (2 * step) - forces[static_cast<std::size_t>(i)][d]) / scale;
       CHECK(error < 1e-8);
     }
+}
+
+/// Checks that forces and their moments about the origin cancel.
+template <int D>
+void check_balance(Bare<D>& body) {
+  const auto forces = body.forces();
+  Vec<D> sum = Vec<D>::Zero();
+  Vec<3> moment = Vec<3>::Zero();
+  double amount = 0;
+  for (Index i = 0; i < body.n(); ++i) {
+    const Vec<D>& f = forces[static_cast<std::size_t>(i)];
+    Vec<3> x3 = Vec<3>::Zero(), f3 = Vec<3>::Zero();
+    x3.head<D>() = body.x(i);
+    f3.head<D>() = f;
+    sum += f;
+    moment += x3.cross(f3);
+    amount += f.norm();
+  }
+  CHECK(sum.norm() < 1e-13 * amount);
+  CHECK(moment.norm() < 1e-13 * amount);
 }
 
 /// A box of n spacings of 1 / n along each axis but the first, which is half as long again: no cube hides a

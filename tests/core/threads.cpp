@@ -56,6 +56,7 @@ TEST_CASE_TEMPLATE("one thread and two give the same bits", Dimension, Dim<2>, D
     CHECK(result.steps == 50);
   };
   same_bits<D>(jittered, "neo_hookean", {.neighbours = "kd_tree", .zero_energy_control = 0.1}, fifty_steps);
+  same_bits<D>(jittered, "neo_hookean", {.formulation = "tl_bond_associated"}, fifty_steps);
   if (D == 2)
     same_bits<D>(lattice, "hypoelastic",
                  {.formulation = "ul_basic", .support_dx = 2.4, .viscosity = 0.5, .skin = 0}, fifty_steps);

@@ -2,8 +2,6 @@
 // and derived from an energy.
 #include <doctest/doctest.h>
 
-#include <Eigen/Geometry>
-
 #include "discretised.hpp"
 
 using namespace taut;
@@ -114,21 +112,7 @@ TEST_CASE_TEMPLATE("zero-energy control: internal forces and moments cancel", Di
     Bare<D> body(cloud, rubber<D>(),
                  {.operators = operators, .support_dx = support, .zero_energy_control = 1});
     body.place([](const Vec<D>& X) { return Vec<D>(X + wavy<D>(X, 0.1) + wavy<D>(Vec<D>(29 * X), 0.01)); });
-    const auto forces = body.forces();
-    Vec<D> sum = Vec<D>::Zero();
-    Vec<3> moment = Vec<3>::Zero();
-    double amount = 0;
-    for (Index i = 0; i < body.n(); ++i) {
-      const Vec<D>& f = forces[static_cast<std::size_t>(i)];
-      Vec<3> x3 = Vec<3>::Zero(), f3 = Vec<3>::Zero();
-      x3.head<D>() = body.x(i);
-      f3.head<D>() = f;
-      sum += f;
-      moment += x3.cross(f3);
-      amount += f.norm();
-    }
-    CHECK(sum.norm() < 1e-13 * amount);
-    CHECK(moment.norm() < 1e-13 * amount);
+    check_balance(body);
   }
 }
 
