@@ -2,6 +2,7 @@
 
 #include <array>
 #include <convergence/cube_run.hpp>
+#include <convergence/method_label.hpp>
 #include <convergence/refinement.hpp>
 #include <lib/names.hpp>
 #include <lib/progress.hpp>
@@ -28,23 +29,13 @@ std::vector<Method> methods() {
         if (updated(formulation)) m.velocity_gradient = operators;
         all.push_back(m);
         if (formulation != "tl_displacement" || operators == "standard") continue;
-        m.zero_energy_control = 1;
-        all.push_back(m);
+        for (const double control : {1.0, 10.0}) {
+          m.zero_energy_control = control;
+          all.push_back(m);
+        }
       }
     }
   return all;
-}
-
-/// The common formulation goes without saying.
-std::string label_of(const Method& m) {
-  const std::string formulation = m.formulation == "tl_displacement" ? "" : m.formulation + ", ";
-  return fmt::format("{}{}, {:g} dx{}", formulation, m.operators, m.support_dx,
-                     m.zero_energy_control > 0 ? fmt::format(", control {:g}", m.zero_energy_control) : "");
-}
-
-/// What a quantity's name gets where zero-energy control is on, for results.csv has no column for it.
-std::string suffix_of(const Method& m) {
-  return m.zero_energy_control > 0 ? "_control_" + snake_number(m.zero_energy_control) : "";
 }
 
 const char* cloud_name(bool jittered) { return jittered ? "jittered" : "lattice"; }
