@@ -15,12 +15,12 @@ namespace taut::bench {
 inline std::string label_of(const Method& m) {
   const std::string formulation = m.formulation == "tl_displacement" ? "" : m.formulation + ", ";
   return fmt::format("{}{}, {:g} dx{}", formulation, m.operators, m.support_dx,
-                     m.zero_energy_control > 0 ? fmt::format(", control {:g}", m.zero_energy_control) : "");
+                     m.zero_energy_control > 0 ? fmt::format(", control {:g}", *m.zero_energy_control) : "");
 }
 
 /// What a quantity's name gets where zero-energy control is on, for results.csv has no column for it.
 inline std::string suffix_of(const Method& m) {
-  return m.zero_energy_control > 0 ? "_control_" + snake_number(m.zero_energy_control) : "";
+  return m.zero_energy_control > 0 ? "_control_" + snake_number(*m.zero_energy_control) : "";
 }
 
 }  // namespace taut::bench

@@ -18,7 +18,8 @@ Method read_method(const TableReader& reader) {
   m.support_dx = reader.number("support_dx", Range{1, 10, true, false}, m.support_dx);
   m.neighbours = reader.choice("neighbours", names().neighbours, m.neighbours);
   m.pair_precision = pair_precision(reader.choice("pair_precision", pair_precision_names(), "automatic"));
-  m.zero_energy_control = reader.number("zero_energy_control", Range::non_negative(), m.zero_energy_control);
+  if (reader.has("zero_energy_control"))
+    m.zero_energy_control = reader.number("zero_energy_control", Range::non_negative());
   m.viscosity = reader.number("viscosity", Range::non_negative(), m.viscosity);
   m.skin = reader.number("skin", Range{0, 2, false, false}, m.skin);
   m.velocity_gradient = reader.choice("velocity_gradient", {"standard", "corrected"}, m.velocity_gradient);

@@ -34,7 +34,7 @@ void check(const Method& method) {
     if (!(value >= 0) || !std::isfinite(value))
       throw InputError(fmt::format("{} = {:g} must not be negative", what, value));
   };
-  not_negative("zero_energy_control", method.zero_energy_control);
+  not_negative("zero_energy_control", method.zero_energy_control.value_or(0));
   not_negative("viscosity", method.viscosity);
   not_negative("skin", method.skin);
 }

@@ -26,8 +26,8 @@ class TlDisplacement final : public TotalLagrangian<D> {
 
  public:
   explicit TlDisplacement(const FormulationSetup<D>& setup) : Base(setup) {
-    if (setup.method.zero_energy_control > 0)
-      control_.emplace(p_, pairs_, this->kernel_, this->h_, setup.method.zero_energy_control);
+    if (const double control = setup.method.zero_energy_control.value_or(0); control > 0)
+      control_.emplace(p_, pairs_, this->kernel_, this->h_, control);
     this->frequency_ = largest_frequency();
   }
 

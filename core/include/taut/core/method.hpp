@@ -2,6 +2,7 @@
 /// \file
 /// The choices that make a discretisation of a body.
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,10 +38,12 @@ struct Method {
   /// Conjugate-gradient iterations of the set-up of `compatible` and `antisymmetric` operators.
   int compatible_iterations = 20;
 
-  /// Coefficient alpha of the pairwise zero-energy control of `tl_displacement`, 0 = absent: adds the energy
+  /// Control of zero-energy modes in the total Lagrangian forms, 0 = absent. `tl_displacement`: coefficient alpha of
+  /// a pairwise energy, absent unless given,
   ///   1/4 sum_a sum_b k_ab |x_ab - F_a X_ab|^2,   k_ab = alpha E V_a V_b W_ab / |X_ab|^2,
-  /// with the stiffness of Ganzenmueller (2015), to the strain energy. Linear motions have none of it.
-  double zero_energy_control = 0;
+  /// with the stiffness of Ganzenmueller (2015). `tl_stress_points`: stiffness of the hourglass modes over the
+  /// one that bends a square cell, or a cube, as a beam does; 1 unless given. Linear motions have none of either.
+  std::optional<double> zero_energy_control{};
 
   /// Updated Lagrangian forms: Monaghan viscosity alpha (0 = absent), skin of the pair list over R, whether
   /// the velocity gradient is linearly exact ("corrected") or plain ("standard").
