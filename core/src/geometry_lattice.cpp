@@ -31,6 +31,9 @@ void check(const LatticeOptions& o, int dimension) {
     throw InputError(fmt::format("make_cloud: jitter {} is not within 0 … 0.4", o.jitter));
   if (o.samples < 1 || o.samples > max_samples)
     throw InputError(fmt::format("make_cloud: samples {} is not within 1 … {}", o.samples, max_samples));
+  if (o.cells && o.lattice != Lattice::node_centred)
+    throw InputError(
+        "make_cloud: cells lie between the particles of node-centred lattices; this one is cell-centred");
   for (int d = 0; d < 3; ++d)
     for (const int layers : o.layers[static_cast<std::size_t>(d)]) {
       if (layers < 0)
@@ -199,6 +202,54 @@ struct Stencil {
   std::size_t own_end() const { return width == 2 ? size() : size() / 2 + 1; }
 };
 
+// The lattice cells with anything inside, in the order of their lowest corners. `sites` counts the nodes
+// along each axis and `begin` the particles before each row of them.
+template <int D>
+void list_cells(const Grid<D>& grid, const std::vector<Fill>& fill, const Place<D>& sites,
+                const std::vector<std::int64_t>& begin, std::int64_t full, Cloud<D>& cloud) {
+  constexpr std::size_t corners = 1 << D, row_corners = corners / 2;
+  bool whole = true;
+  for (std::int64_t row = 0; row < Grid<D>::rows(grid.size); ++row) {
+    const Place<D> first = Grid<D>::row_place(row, grid.size);
+    // The next particle of each row of nodes along the edges of this row of cells, and whether a cell around
+    // the node is inside: those of a node's row at x - 1 and x.
+    std::array<std::int64_t, row_corners> next{}, around{};
+    for (std::size_t r = 0; r < row_corners; ++r) {
+      std::int64_t node_row = 0, rows_before = 1, k = 0;
+      for (std::size_t d = 1; d < D; ++d) {
+        const auto at = first[d] + static_cast<std::int64_t>(r >> (d - 1) & 1);
+        node_row += at * rows_before;
+        rows_before *= sites[d];
+        k += at * grid.stride[d];
+      }
+      next[r] = begin[static_cast<std::size_t>(node_row)];
+      around[r] = k;
+    }
+    const auto is_particle = [&](std::size_t r, std::int64_t x) {
+      for (std::size_t c = 0; c < corners; ++c) {
+        std::int64_t k = around[r] + x;
+        for (std::size_t d = 0; d < D; ++d) k += static_cast<std::int64_t>(c >> d & 1) * grid.stride[d];
+        if (fill[static_cast<std::size_t>(k)] > 0) return true;
+      }
+      return false;
+    };
+    Place<D> at = first;
+    for (at[0] = 0; at[0] < grid.size[0]; ++at[0]) {
+      const Fill inside = fill[static_cast<std::size_t>(grid.fill_at(at))];
+      if (inside > 0) {
+        std::array<Index, corners> cell;
+        for (std::size_t c = 0; c < corners; ++c)
+          cell[c] = static_cast<Index>(next[c >> 1] + static_cast<std::int64_t>(c & 1));
+        cloud.cells.push_back(cell);
+        cloud.cell_share.push_back(static_cast<double>(inside) / static_cast<double>(full));
+        whole = whole && inside == full;
+      }
+      for (std::size_t r = 0; r < row_corners; ++r) next[r] += is_particle(r, at[0]);
+    }
+  }
+  if (whole) cloud.cell_share = {};
+}
+
 }  // namespace
 
 template <int D>
@@ -285,6 +336,7 @@ Cloud<D> make_cloud(const Shape<D>& shape, const LatticeOptions& options) {
       ++p;
     }
   }
+  if (options.cells) list_cells<D>(grid, fill, sites, begin, full, cloud);
   return cloud;
 }
 

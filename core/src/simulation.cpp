@@ -75,6 +75,14 @@ Simulation<D>::Simulation(Cloud<D> cloud, std::shared_ptr<const Material<D>> mat
   if (!cloud.B.empty() && cloud.B.size() != cloud.size())
     throw InputError(
         fmt::format("the cloud has {} positions but {} boundary area vectors", cloud.size(), cloud.B.size()));
+  for (std::size_t q = 0; q < cloud.cells.size(); ++q)
+    for (const Index corner : cloud.cells[q])
+      if (corner < 0 || static_cast<std::size_t>(corner) >= cloud.size())
+        throw InputError(
+            fmt::format("corner {} of cell {} is none of the {} particles", corner, q, cloud.size()));
+  if (!cloud.cell_share.empty() && cloud.cell_share.size() != cloud.cells.size())
+    throw InputError(fmt::format("the cloud has {} cells but {} shares of them", cloud.cells.size(),
+                                 cloud.cell_share.size()));
   impl_->material.assign(cloud.size(), 0);
   impl_->cloud = std::move(cloud);
   impl_->materials.push_back(std::move(material));
@@ -224,6 +232,8 @@ void Simulation<D>::prepare() {
   if (needs_areas(s.method.operators) && s.planes.empty()) enclose(s.cloud);
   const double reach = s.method.support_dx * s.cloud.dx * (1 + s.method.skin);
   s.particles = assemble<D>(s.cloud, s.materials, s.material, s.planes, reach);
+  s.cloud.cells = {};  // the particles have them now
+  s.cloud.cell_share = {};
   for (const auto& condition : s.conditions) condition();
   for (const auto& plane : s.planes) {
     std::vector<Index> on;

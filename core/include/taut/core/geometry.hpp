@@ -55,6 +55,11 @@ struct Cloud {
   std::vector<Vec<D>> B;  ///< outward boundary area vectors [m^(D-1)], zero inside; may be empty when unknown
   std::vector<char>
       extra;      ///< 1 for particles of added layers (`LatticeOptions::layers`); empty when there are none
+  /// Cells between particles, for formulations that keep stress on cells: their corners, bit d of a corner's
+  /// number telling whether it is the upper one along axis d. Empty unless asked for
+  /// (`LatticeOptions::cells`).
+  std::vector<std::array<Index, 1 << D>> cells;
+  std::vector<double> cell_share;  ///< part of each cell that is body, 0 … 1; empty where all are whole
   double dx = 0;  ///< nominal spacing [m]
   std::size_t size() const { return X.size(); }
 };
@@ -78,6 +83,7 @@ struct LatticeOptions {
   /// points (1 … 16 along each axis) that are inside: volumes of round bodies come closer to the true ones,
   /// at the price of particles of small volume on the surface. The sums below hold all the same.
   int samples = 1;
+  bool cells = false;  ///< also list the cells, 2^D corners of four bytes each
 };
 
 /// Fills a shape with a square lattice aligned with its bounding box, in lexicographic order, x fastest.
@@ -87,7 +93,8 @@ struct LatticeOptions {
 /// displacements depend on the seed and the place in the lattice alone, and are the same on every machine.
 /// `Cloud::dx` is the wanted spacing where it divides the box, else the D-th root of a cell's volume. \throws
 /// InputError for a spacing that is not positive or that is larger than the body, jitter, layers or samples
-/// out of range, a body without an inside cell, more cells than `Index` counts.
+/// out of range, a body without an inside cell, more cells than `Index` counts, `cells` of a cell-centred
+/// lattice.
 template <int D>
 Cloud<D> make_cloud(const Shape<D>& shape, const LatticeOptions& options);
 

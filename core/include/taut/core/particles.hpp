@@ -2,6 +2,8 @@
 /// \file
 /// The particles of a simulation: structure of arrays, ordered for locality.
 
+#include <array>
+#include <bit>
 #include <memory>
 #include <taut/boundary/mirror.hpp>
 #include <taut/core/fields.hpp>
@@ -29,17 +31,21 @@ struct Particles {
   std::vector<std::uint8_t> material;  ///< which of `materials` a particle is of
   std::vector<std::shared_ptr<const Material<D>>> materials;
   MirrorMap<D> mirror;
-  std::vector<std::uint8_t> planes;  ///< how many symmetry planes a particle lies on, or empty
+  std::vector<std::uint8_t> planes;  ///< bit d: lies on a symmetry plane across axis d; or empty
+  /// Cells of the cloud, their corners as internal indices, or empty; with the part of each that is body, or
+  /// empty where all are whole. A formulation that lives on cells takes them over.
+  std::vector<std::array<Index, 1 << D>> cells;
+  std::vector<double> cell_share;
 
   /// The part of V that belongs to the modelled side of the symmetry planes.
   double modelled_share(Index i) const {
-    return planes.empty() ? 1 : 1.0 / (1 << planes[static_cast<std::size_t>(i)]);
+    return planes.empty() ? 1 : 1.0 / (1 << std::popcount(planes[static_cast<std::size_t>(i)]));
   }
 
   std::size_t bytes() const {
     return X.bytes() + x.bytes() + v.bytes() + a.bytes() + V.bytes() + m.bytes() + m_flat.bytes() +
            (id.size() + place.size()) * sizeof(Index) + B.size() * sizeof(Vec<D>) + material.size() +
-           planes.size();
+           planes.size() + cells.size() * sizeof(cells[0]) + cell_share.size() * sizeof(double);
   }
 };
 
