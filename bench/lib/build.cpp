@@ -165,6 +165,8 @@ Cloud<D> build_cloud(const Scene& scene, const RunSpec& run, const SweepPoint& p
   options.lattice = lattice.kind;
   options.jitter = lattice.jitter;
   options.seed = lattice.seed;
+  // Cell-centred ones have none, which the formulation says better.
+  options.cells = run.method.formulation == "tl_stress_points" && lattice.kind == Lattice::node_centred;
   if (lattice.kind == Lattice::cell_centred)
     for (const BoundarySpec& boundary : scene.boundaries)
       if (boundary.layers > 0) {

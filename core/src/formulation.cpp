@@ -21,6 +21,7 @@ const std::vector<Entry<D>>& formulation_registry() {
   static const std::vector<Entry<D>> entries = {
       {"tl_displacement", make_tl_displacement<D>},
       {"tl_bond_associated", make_tl_bond_associated<D>},
+      {"tl_stress_points", make_tl_stress_points<D>},
       {"ul_basic", make_ul_basic<D>},
       {"ul_artificial_stress", make_ul_artificial_stress<D>},
   };

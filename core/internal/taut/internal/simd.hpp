@@ -31,6 +31,15 @@ TAUT_INLINE Pack gather(const double* p, const Index* at) {
   return Pack{p[at[0]], p[at[1]], p[at[2]], p[at[3]], p[at[4]], p[at[5]], p[at[6]], p[at[7]]};
 }
 
+/// {before[7], v[0], …, v[6]}: values move up by a lane.
+TAUT_INLINE Pack move_up(Pack before, Pack v) {
+#ifdef __clang__
+  return __builtin_shufflevector(before, v, 7, 8, 9, 10, 11, 12, 13, 14);
+#else
+  return __builtin_shuffle(before, v, PackMask{7, 8, 9, 10, 11, 12, 13, 14});
+#endif
+}
+
 /// All ones in the lanes whose bits of `mask` are set.
 TAUT_INLINE PackMask lanes_of(std::uint8_t mask) {
   const std::int64_t m = mask;
