@@ -21,7 +21,7 @@ std::shared_ptr<const Material<D>> rubber(double stiffness = E) {
 
 // Operators that are linearly exact, with the smallest support that all clouds here allow.
 constexpr std::pair<const char*, double> linear_operators[] = {
-    {"corrected", 1.5}, {"corrected", 2.4}, {"compatible", 1.5}, {"quadratic", 2.6}};
+    {"corrected", 1.5}, {"corrected", 2.4}, {"compatible", 1.5}, {"antisymmetric", 1.5}, {"quadratic", 2.6}};
 
 Method method(const char* operators, double support) {
   return {.formulation = "tl_bond_associated", .operators = operators, .support_dx = support};

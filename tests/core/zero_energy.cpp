@@ -41,7 +41,7 @@ double largest(const std::vector<Vec<D>>& forces) {
 
 // Operators that are linearly exact, with the smallest support that all clouds here allow.
 constexpr std::pair<const char*, double> linear_operators[] = {
-    {"corrected", 1.5}, {"corrected", 2.4}, {"compatible", 1.5}, {"quadratic", 2.6}};
+    {"corrected", 1.5}, {"corrected", 2.4}, {"compatible", 1.5}, {"antisymmetric", 1.5}, {"quadratic", 2.6}};
 
 }  // namespace
 
