@@ -20,7 +20,7 @@ Mat<3> BentBar::stress(const Vec<3>& X) {
 
 BentBarRun run_bent_bar(const Method& method, int intervals, double jitter, unsigned seed, int threads) {
   const double h = 1.0 / intervals, L = BentBar::length();
-  LatticeOptions lattice{.dx = h, .jitter = jitter, .seed = seed};
+  LatticeOptions lattice{.dx = h, .jitter = jitter, .seed = seed, .cells = true};
   Simulation<3> simulation(make_cloud(box<3>({0, -0.5, 0}, {L, 0.5, 0.5}), lattice),
                            make_material<3>("linear_elastic", BentBar::material()), method);
   simulation.symmetry_plane(0, 0);

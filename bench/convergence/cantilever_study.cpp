@@ -16,17 +16,20 @@ constexpr double jitter = 0.15;
 
 /// A run of the scene, at its sweep's spacing `dx`.
 struct Job {
-  std::string operators, kernel;
-  std::string formulation = "tl_displacement";
+  Method method;
   bool jittered = false;
-  double control = 0;
   double dx = 0;
 };
 
 std::string label_of(const Job& job) {
-  return fmt::format("{}, {}, {}{}", job.jittered ? "jittered" : "lattice", job.operators, job.kernel,
-                     job.formulation == "tl_displacement" ? "" : ", " + job.formulation);
+  const Method& m = job.method;
+  const std::string formulation = m.formulation == "tl_displacement" ? "" : ", " + m.formulation;
+  return (job.jittered ? "jittered" : "lattice") +
+         (has_pairs(m.formulation) ? ", " + m.operators + ", " + m.kernel : "") + formulation;
 }
+
+/// The strength of the control that a formulation has when none is given.
+double own_control(const Method& m) { return has_pairs(m.formulation) ? 0 : 1; }
 
 class CantileverStudy {
  public:
@@ -42,12 +45,17 @@ class CantileverStudy {
     // The standard operators see a constant displacement gradient wrongly at every face, however fine: no
     // order to look for. With a constant slope out to the support's edge `quadratic` weighs diagonal
     // neighbours more than smoother kernels do.
-    const std::string& kernel = scene_.runs.at(0).method.kernel;
+    Method method = scene_.runs.at(0).method;
+    const std::string kernel = method.kernel;
     for (const std::string& operators : names().operators) {
       if (operators == "standard") continue;
-      variants_.push_back({operators, kernel});
-      if (operators != "corrected" && kernel != "quadratic") variants_.push_back({operators, "quadratic"});
+      method.operators = operators;
+      method.kernel = kernel;
+      variants_.push_back({method});
+      method.kernel = "quadratic";
+      if (operators != "corrected" && kernel != "quadratic") variants_.push_back({method});
     }
+    variants_.push_back({{.formulation = "tl_stress_points"}});
   }
 
   Section run() {
@@ -59,7 +67,7 @@ class CantileverStudy {
                     "against quadratic finite elements. Jittered: inner points "
                     "moved by up to {:g} spacings; mean over {} seeds of the sizes of their errors.",
                     scene_.runs.at(0).method.support_dx, jitter, seeds_));
-    const std::size_t clouds = 2, runs_a_cloud = variants_.size() * (spacings_.size() + controls_.size());
+    const std::size_t clouds = 2, runs_a_cloud = variants_.size() * (spacings_.size() + controls_.size()) - 1;
     ProgressLine progress(options_.common.quiet, clouds * runs_a_cloud);
     progress_ = &progress;
     refine();
@@ -70,17 +78,15 @@ class CantileverStudy {
  private:
   /// Mean size of the tip's error over the seeds; nothing when one broke.
   std::optional<double> error(const Job& job) {
+    const double control = job.method.zero_energy_control.value_or(own_control(job.method));
     progress_->begin(item_++, fmt::format("cantilever, {}, dx {:g} mm, control {:g}", label_of(job),
-                                          job.dx * 1e3, job.control));
+                                          job.dx * 1e3, control));
     std::vector<std::optional<double>> errors;
     double signed_mean = 0;
     for (unsigned seed = 1; seed <= (job.jittered ? static_cast<unsigned>(seeds_) : 1u); ++seed) {
       RunSpec spec = scene_.runs.at(0);
-      spec.label = job.operators;
-      spec.method.formulation = job.formulation;
-      spec.method.operators = job.operators;
-      spec.method.kernel = job.kernel;
-      spec.method.zero_energy_control = job.control;
+      spec.label = label_of(job);
+      spec.method = job.method;
       spec.lattice.jitter = job.jittered ? jitter : 0;
       spec.lattice.seed = seed;
       spec.only.clear();
@@ -107,7 +113,7 @@ class CantileverStudy {
       }
       for (Row row : result.rows(options_.common.threads)) {
         row.scene = job.jittered ? "cantilever_jittered" : "cantilever_lattice";
-        if (job.control > 0) row.quantity += "_control_" + snake_number(job.control);
+        if (job.method.zero_energy_control) row.quantity += "_control_" + snake_number(control);
         if (job.jittered) row.quantity += fmt::format("_seed_{}", seed);
         section_.rows.push_back(std::move(row));
       }
@@ -130,11 +136,7 @@ class CantileverStudy {
   Row shared_row(const Job& job) const {
     Row row;
     row.scene = job.jittered ? "cantilever_jittered" : "cantilever_lattice";
-    Method method = scene_.runs.at(0).method;
-    method.formulation = job.formulation;
-    method.operators = job.operators;
-    method.kernel = job.kernel;
-    set_method(row, method);
+    set_method(row, job.method);
     row.material = scene_.material.model;
     row.threads = options_.common.threads;
     row.integrator = std::string("relax");
@@ -192,7 +194,7 @@ class CantileverStudy {
         {}};
     Chart chart{"cantilever_control",
                 table.title,
-                "Error of the tip's deflection against the coefficient of the pairwise control. Marks at "
+                "Error of the tip's deflection against the coefficient of the control. Marks at "
                 "0.01: without control.",
                 "coefficient of the zero-energy control",
                 "|error| [%]",
@@ -214,18 +216,22 @@ class CantileverStudy {
         Series series{label, Series::Style::run, colour++, {}, {}, {}, true};
         double least = 1e300, most = 0;
         for (const double c : controls_) {
-          job.control = c;
-          const auto e = c == 0 ? refined_.lines[line].error[level] : error(job);
+          job.method.zero_energy_control = c;
+          const auto e = c == own_control(job.method) ? refined_.lines[line].error[level] : error(job);
           cells.push_back({e ? fmt::format("{:.3g} %", 100 * *e) : "broke", "number"});
           if (!e) continue;
           series.x.push_back(c == 0 ? 0.01 : c), series.y.push_back(100 * *e);
           least = std::min(least, *e), most = std::max(most, *e);
         }
         cells.push_back({most >= least ? fmt::format("{:.3g}", 100 * (most - least)) : "–", "number"});
-        job.control = 0;
-        job.formulation = "tl_bond_associated";
-        const auto bonds = error(job);
-        cells.push_back({bonds ? fmt::format("{:.3g} %", 100 * *bonds) : "broke", "number"});
+        if (has_pairs(job.method.formulation)) {
+          job.method.zero_energy_control.reset();
+          job.method.formulation = "tl_bond_associated";
+          const auto bonds = error(job);
+          cells.push_back({bonds ? fmt::format("{:.3g} %", 100 * *bonds) : "broke", "number"});
+        } else {
+          cells.push_back({"–", "number"});
+        }
         table.rows.push_back(std::move(cells));
         chart.series.push_back(std::move(series));
         ++line;

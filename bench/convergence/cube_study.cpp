@@ -18,7 +18,13 @@ bool updated(const std::string& formulation) { return formulation.starts_with("u
 
 std::vector<Method> methods() {
   std::vector<Method> all;
-  for (const std::string& formulation : names().formulations)
+  for (const std::string& formulation : names().formulations) {
+    if (!has_pairs(formulation)) {
+      for (const std::optional<double> control :
+           {std::optional<double>(), std::optional(0.0), std::optional(3.0)})
+        all.push_back({.formulation = formulation, .zero_energy_control = control});
+      continue;
+    }
     for (const std::string& operators : names().operators) {
       if (updated(formulation) && operators != "standard" && operators != "corrected") continue;
       for (const double support_dx : {1.5, 2.4}) {
@@ -35,6 +41,7 @@ std::vector<Method> methods() {
         }
       }
     }
+  }
   return all;
 }
 

@@ -116,6 +116,7 @@ std::vector<Method> methods(bool quick) {
           m.zero_energy_control = 1;
           all.push_back(m);
         }
+  all.push_back({.formulation = "tl_stress_points"});
   return all;
 }
 
@@ -181,8 +182,8 @@ void report(const Body& body, bool jittered, const std::vector<Choice>& choices,
       const Choice& c = *shown[i];
       table.rows.push_back(
           {{label_of(c.method), ""},
-           {c.method.kernel, ""},
-           {to_string(c.method.pair_precision), ""},
+           {c.row.kernel, ""},
+           {c.row.precision, ""},
            {body.levels[c.level], ""},
            {fmt::format("{:.3g} %", error[i]), "number"},
            {fmt::format("{:.3g} s", median(c.loop_s)), "number"},

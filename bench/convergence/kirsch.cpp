@@ -75,6 +75,7 @@ Cloud<2> quarter_ring_lattice(double a, double b, double dx) {
                                 Vec<2>::Zero(), Vec<2>::Constant(b));
   LatticeOptions options;
   options.dx = dx;
+  options.cells = true;
   return make_cloud(ring, options);
 }
 

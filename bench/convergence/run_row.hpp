@@ -7,15 +7,6 @@
 
 namespace taut::bench {
 
-/// Formulation, operators, kernel, support, precision.
-inline void set_method(Row& row, const Method& method) {
-  row.formulation = method.formulation;
-  row.operators = method.operators;
-  row.kernel = method.kernel;
-  row.support_dx = method.support_dx;
-  row.precision = to_string(method.pair_precision);
-}
-
 /// Particles, pairs, steps, times, memory; a run without a good end becomes `broke` with its time as value.
 template <int D>
 void set_run(Row& row, const Simulation<D>& simulation, const RunResult& result) {

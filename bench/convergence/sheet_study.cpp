@@ -94,46 +94,47 @@ Section study_sheet(const StudyOptions& options) {
     factors.header.push_back("dx = " + peak.names.back());
   }
   stress.names = peak.names;
-  const std::vector<double> supports = {1.5, 2.4};
-  ProgressLine progress(options.common.quiet, 2 * names().operators.size() * supports.size());
+  std::vector<Method> methods;
+  for (const std::string& operators : names().operators)
+    for (const double support_dx : {1.5, 2.4})
+      methods.push_back({.operators = operators, .support_dx = support_dx});
+  methods.push_back({.formulation = "tl_stress_points"});
+  ProgressLine progress(options.common.quiet, 2 * methods.size());
   std::size_t item = 0;
   for (const bool fitted : {false, true})
-    for (const std::string& operators : names().operators)
-      for (const double support_dx : supports) {
-        Method method;
-        method.operators = operators;
-        method.support_dx = support_dx;
-        const std::string label =
-            fmt::format("{}, {}, {:g} dx", fitted ? "fitted" : "lattice", operators, support_dx);
-        progress.begin(item++, "sheet with a hole, " + label);
-        RefinementLine peaks{label, {}, {}}, errors{label, {}, {}};
-        std::vector<HtmlCell> cells = {{label, ""}};
-        std::string outcome;
-        for (const double dx : spacings) {
-          Outcome one = run_sheet(method, fitted, dx, options.common.threads);
-          cells.push_back({one.peak ? fmt::format("{:.3f}", *one.peak) : one.row.status, "number"});
-          outcome += cells.back().text + ' ';
-          if (!one.why.empty()) outcome += "(" + one.why + ") ";
-          peaks.error.push_back(one.peak ? std::optional(std::abs(*one.peak / 3 - 1)) : std::nullopt);
-          errors.error.push_back(one.stress_error);
-          Row row = one.row;
-          row.quantity = "peak_stress_factor";
-          if (one.peak)
-            row.value = *one.peak, row.reference = 3, row.error = error_of(*one.peak, 3, false),
-            row.unit = "1";
-          section.rows.push_back(row);
-          row.quantity = "stress_error";
-          row.reference.reset();
-          if (one.stress_error) row.value = row.error = one.stress_error;
-          section.rows.push_back(row);
-          peaks.row = shared_columns(row);
-        }
-        errors.row = peaks.row;
-        progress.end("stress factors " + outcome);
-        factors.rows.push_back(std::move(cells));
-        peak.lines.push_back(std::move(peaks));
-        stress.lines.push_back(std::move(errors));
+    for (const Method& method : methods) {
+      const std::string label =
+          (fitted ? "fitted, " : "lattice, ") +
+          (has_pairs(method.formulation) ? fmt::format("{}, {:g} dx", method.operators, method.support_dx)
+                                         : method.formulation);
+      progress.begin(item++, "sheet with a hole, " + label);
+      RefinementLine peaks{label, {}, {}}, errors{label, {}, {}};
+      std::vector<HtmlCell> cells = {{label, ""}};
+      std::string outcome;
+      for (const double dx : spacings) {
+        Outcome one = run_sheet(method, fitted, dx, options.common.threads);
+        cells.push_back({one.peak ? fmt::format("{:.3f}", *one.peak) : one.row.status, "number"});
+        outcome += cells.back().text + ' ';
+        if (!one.why.empty()) outcome += "(" + one.why + ") ";
+        peaks.error.push_back(one.peak ? std::optional(std::abs(*one.peak / 3 - 1)) : std::nullopt);
+        errors.error.push_back(one.stress_error);
+        Row row = one.row;
+        row.quantity = "peak_stress_factor";
+        if (one.peak)
+          row.value = *one.peak, row.reference = 3, row.error = error_of(*one.peak, 3, false), row.unit = "1";
+        section.rows.push_back(row);
+        row.quantity = "stress_error";
+        row.reference.reset();
+        if (one.stress_error) row.value = row.error = one.stress_error;
+        section.rows.push_back(row);
+        peaks.row = shared_columns(row);
       }
+      errors.row = peaks.row;
+      progress.end("stress factors " + outcome);
+      factors.rows.push_back(std::move(cells));
+      peak.lines.push_back(std::move(peaks));
+      stress.lines.push_back(std::move(errors));
+    }
   section.tables.push_back(std::move(factors));
   section.tables.push_back(order_table(stress, "Sheet with a hole: relative L2 error of the stress", ""));
   for (const Refinement* r : {&peak, &stress})

@@ -60,6 +60,7 @@ Cloud<3> swinging_cube_cloud(int intervals, double jitter, unsigned seed) {
   lattice.dx = 1.0 / intervals;
   lattice.jitter = jitter;
   lattice.seed = seed;
+  lattice.cells = true;
   return make_cloud(box<3>(Vec<3>::Zero(), Vec<3>::Ones()), lattice);
 }
 

@@ -5,6 +5,7 @@
 #include <lib/auto_rules.hpp>
 #include <lib/candidates.hpp>
 #include <lib/extrapolation.hpp>
+#include <lib/names.hpp>
 #include <lib/reference.hpp>
 #include <lib/results.hpp>
 
@@ -32,6 +33,7 @@ bool same(const RunSpec& a, const RunSpec& b) {
 }
 
 std::string label_of(const Method& m) {
+  if (!has_pairs(m.formulation)) return m.formulation;
   const std::string& what = m.formulation.starts_with("tl_") ? m.operators : m.formulation;
   return fmt::format("{}, {}, {:g} dx", what, m.kernel, m.support_dx);
 }

@@ -221,13 +221,9 @@ std::vector<Row> CaseResult::rows(int threads) const {
   for (const ProbeSpec& probe : scene->probes) {
     Row row;
     row.scene = scene->name;
-    row.formulation = run->method.formulation;
-    row.operators = run->method.operators;
+    set_method(row, run->method);
     row.material = material;
-    row.kernel = run->method.kernel;
-    row.support_dx = run->method.support_dx;
     if (dx > 0) row.dx = dx;
-    row.precision = to_string(run->method.pair_precision);
     row.integrator = run->solve.mode == "relax" ? "relax" : run->solve.integrator;
     row.threads = threads;
     row.quantity = probe.name;

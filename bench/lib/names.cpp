@@ -13,4 +13,6 @@ const Names& names() {
   return all;
 }
 
+bool has_pairs(const std::string& formulation) { return formulation != "tl_stress_points"; }
+
 }  // namespace taut::bench

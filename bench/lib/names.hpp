@@ -14,4 +14,8 @@ struct Names {
 /// What the library's registries hold.
 const Names& names();
 
+/// Whether a formulation works on pairs of neighbours: operators, kernel, support and pair precision are then
+/// its choices. Stress points have cells instead.
+bool has_pairs(const std::string& formulation);
+
 }  // namespace taut::bench

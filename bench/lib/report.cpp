@@ -4,6 +4,7 @@
 #include <cmath>
 #include <lib/files.hpp>
 #include <lib/html.hpp>
+#include <lib/names.hpp>
 #include <lib/picture.hpp>
 #include <lib/reference.hpp>
 #include <lib/report.hpp>
@@ -105,9 +106,13 @@ void write_runs(HtmlPage& page, const SceneReport& part) {
          {s.loop_s > 0 ? fmt::format("{:.1f}", s.particle_steps / s.loop_s * 1e-6) : "", "number"},
          {group.dx > 0 ? fmt::format("{:g}", group.dx * 1e3) : "", "number"},
          {fmt::format("{}", first.particles), "number"},
-         {m.formulation + (m.formulation.starts_with("tl_") ? ", " + m.operators : ""), "wrap"},
+         {m.formulation +
+              (m.formulation.starts_with("tl_") && has_pairs(m.formulation) ? ", " + m.operators : ""),
+          "wrap"},
          {first.material, "wrap"},
-         {fmt::format("{}, {}, {:g} dx", lattice, m.kernel, m.support_dx), "wrap"}});
+         {has_pairs(m.formulation) ? fmt::format("{}, {}, {:g} dx", lattice, m.kernel, m.support_dx)
+                                   : lattice,
+          "wrap"}});
   }
   page.table({"run", "outcome", "rms error", "worst error", "loop time", "M steps/s", "dx [mm]", "particles",
               "formulation, operators", "material", "lattice, kernel, support radius"},

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fstream>
 #include <lib/files.hpp>
+#include <lib/names.hpp>
 #include <lib/results.hpp>
 #include <taut/core/error.hpp>
 
@@ -70,6 +71,15 @@ class LineReader {
 };
 
 }  // namespace
+
+void set_method(Row& row, const Method& method) {
+  row.formulation = method.formulation;
+  if (!has_pairs(method.formulation)) return;
+  row.operators = method.operators;
+  row.kernel = method.kernel;
+  row.support_dx = method.support_dx;
+  row.precision = to_string(method.pair_precision);
+}
 
 std::string results_header() {
   return "scene,formulation,operators,material,kernel,support_dx,dx,particles,pairs,threads,precision,"

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <taut/core/method.hpp>
 #include <vector>
 
 namespace taut::bench {
@@ -24,6 +25,9 @@ struct Row {
   std::string status = "ok";  ///< ok, broke (value = time of failure [s]), skipped
   std::optional<double> setup_s, loop_s, particle_steps_per_s, bytes_per_particle;
 };
+
+/// Formulation, operators, kernel, support and precision; only the first where there are no pairs.
+void set_method(Row& row, const Method& method);
 
 /// "scene,formulation,…", in the order of the columns.
 std::string results_header();

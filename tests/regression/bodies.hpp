@@ -14,6 +14,7 @@ struct Case {
   double dx = 2e-3;
   const char* material = "st_venant_kirchhoff";
   Lattice lattice = Lattice::node_centred;
+  double jitter = 0;
   Method method{};
   RelaxOptions solve{};
 };
@@ -25,7 +26,10 @@ struct Outcome {
 
 inline Outcome solve(const Case& c) {
   const double L = 0.2, H = c.body == Body::truss ? 0.05 : 0.02, E = c.body == Body::truss ? 2e6 : 20e6;
-  LatticeOptions lattice{.dx = c.dx, .lattice = c.lattice};
+  LatticeOptions lattice{.dx = c.dx,
+                         .lattice = c.lattice,
+                         .jitter = c.jitter,
+                         .cells = c.method.formulation == "tl_stress_points"};
   // Cell-centred particles do not lie on the clamped face: three columns beyond it are held.
   const bool cells = c.lattice == Lattice::cell_centred;
   if (cells) lattice.layers[0] = {3, 0};

@@ -1,10 +1,12 @@
-// Cantilever under a transverse dead load (Tran-Duc et al. 2023, 3.1): truth by total Lagrangian Q2 finite elements, 60 x 6, St.
-// Venant-Kirchhoff, plane stress; tip displacement in mm (bench/reference/cantilever.csv).
-#include "bodies.hpp"
-
+// Cantilever under a transverse dead load (Tran-Duc et al. 2023, 3.1): truth by total Lagrangian Q2 finite
+// elements, 60 x 6, St. Venant-Kirchhoff, plane stress; tip displacement in mm
+// (bench/reference/cantilever.csv).
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <tuple>
+
+#include "bodies.hpp"
 
 using namespace taut;
 
@@ -23,11 +25,28 @@ TEST_CASE("cantilever: the tip error of corrected operators falls with the spaci
   }
 }
 
+TEST_CASE("cantilever: stress points are near the truth from the coarsest lattice on") {
+  for (const auto& [dx, jitter, bound] : {std::tuple{4e-3, 0.0, 0.003}, std::tuple{2e-3, 0.0, 0.0005},
+                                          std::tuple{1e-3, 0.0, 0.0003}, std::tuple{2e-3, 0.15, 0.002}}) {
+    CAPTURE(dx);
+    CAPTURE(jitter);
+    const auto outcome = solve({.body = Body::cantilever,
+                                .load = -250,
+                                .dx = dx,
+                                .jitter = jitter,
+                                .method = {.formulation = "tl_stress_points"}});
+    CHECK(outcome.result.status == Status::ok);
+    CHECK(std::abs(1e3 * outcome.tip.y() / -47.4404 - 1) < bound);
+    CHECK(1e3 * outcome.tip.x() == doctest::Approx(-6.8844).epsilon(2 * bound));
+  }
+}
+
 TEST_CASE("cantilever: how pair vectors are kept does not move the tip") {
   const auto tip = [](PairPrecision precision) {
     Method method;
     method.pair_precision = precision;
-    const auto outcome = solve({.body = Body::cantilever, .load = -250, .method = method, .solve = {.tolerance = 1e-9}});
+    const auto outcome =
+        solve({.body = Body::cantilever, .load = -250, .method = method, .solve = {.tolerance = 1e-9}});
     REQUIRE(outcome.result.status == Status::ok);
     return outcome.tip;
   };
