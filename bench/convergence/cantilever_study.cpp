@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <convergence/refinement.hpp>
 #include <convergence/run_row.hpp>
@@ -67,7 +68,12 @@ class CantileverStudy {
                     "against quadratic finite elements. Jittered: inner points "
                     "moved by up to {:g} spacings; mean over {} seeds of the sizes of their errors.",
                     scene_.runs.at(0).method.support_dx, jitter, seeds_));
-    const std::size_t clouds = 2, runs_a_cloud = variants_.size() * (spacings_.size() + controls_.size()) - 1;
+    const std::size_t clouds = 2;
+    std::size_t runs_a_cloud = 0;
+    for (const Job& job : variants_)
+      runs_a_cloud +=
+          spacings_.size() + has_pairs(job.method.formulation) + controls_.size() -
+          static_cast<std::size_t>(std::count(controls_.begin(), controls_.end(), own_control(job.method)));
     ProgressLine progress(options_.common.quiet, clouds * runs_a_cloud);
     progress_ = &progress;
     refine();
