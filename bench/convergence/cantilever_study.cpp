@@ -29,9 +29,6 @@ std::string label_of(const Job& job) {
          (has_pairs(m.formulation) ? ", " + m.operators + ", " + m.kernel : "") + formulation;
 }
 
-/// The strength of the control that a formulation has when none is given.
-double own_control(const Method& m) { return has_pairs(m.formulation) ? 0 : 1; }
-
 class CantileverStudy {
  public:
   explicit CantileverStudy(const StudyOptions& options)
@@ -71,9 +68,9 @@ class CantileverStudy {
     const std::size_t clouds = 2;
     std::size_t runs_a_cloud = 0;
     for (const Job& job : variants_)
-      runs_a_cloud +=
-          spacings_.size() + has_pairs(job.method.formulation) + controls_.size() -
-          static_cast<std::size_t>(std::count(controls_.begin(), controls_.end(), own_control(job.method)));
+      runs_a_cloud += spacings_.size() + has_pairs(job.method.formulation) + controls_.size() -
+                      static_cast<std::size_t>(std::count(controls_.begin(), controls_.end(),
+                                                          default_control(job.method.formulation)));
     ProgressLine progress(options_.common.quiet, clouds * runs_a_cloud);
     progress_ = &progress;
     refine();
@@ -84,7 +81,7 @@ class CantileverStudy {
  private:
   /// Mean size of the tip's error over the seeds; nothing when one broke.
   std::optional<double> error(const Job& job) {
-    const double control = job.method.zero_energy_control.value_or(own_control(job.method));
+    const double control = job.method.zero_energy_control.value_or(default_control(job.method.formulation));
     progress_->begin(item_++, fmt::format("cantilever, {}, dx {:g} mm, control {:g}", label_of(job),
                                           job.dx * 1e3, control));
     std::vector<std::optional<double>> errors;
@@ -223,7 +220,8 @@ class CantileverStudy {
         double least = 1e300, most = 0;
         for (const double c : controls_) {
           job.method.zero_energy_control = c;
-          const auto e = c == own_control(job.method) ? refined_.lines[line].error[level] : error(job);
+          const auto e =
+              c == default_control(job.method.formulation) ? refined_.lines[line].error[level] : error(job);
           cells.push_back({e ? fmt::format("{:.3g} %", 100 * *e) : "broke", "number"});
           if (!e) continue;
           series.x.push_back(c == 0 ? 0.01 : c), series.y.push_back(100 * *e);

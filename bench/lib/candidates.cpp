@@ -26,10 +26,13 @@ bool is_error(const ProbeSpec& probe) { return probe.measure == "curve_error"; }
 
 bool same(const RunSpec& a, const RunSpec& b) {
   const Method &m = a.method, &n = b.method;
+  const auto control = [](const Method& o) {
+    return o.zero_energy_control.value_or(default_control(o.formulation));
+  };
   return m.formulation == n.formulation && m.operators == n.operators && m.kernel == n.kernel &&
-         m.support_dx == n.support_dx && m.zero_energy_control == n.zero_energy_control &&
-         m.pair_precision == n.pair_precision && a.lattice.kind == b.lattice.kind &&
-         a.lattice.jitter == b.lattice.jitter && a.material.empty() && b.material.empty();
+         m.support_dx == n.support_dx && control(m) == control(n) && m.pair_precision == n.pair_precision &&
+         a.lattice.kind == b.lattice.kind && a.lattice.jitter == b.lattice.jitter && a.material.empty() &&
+         b.material.empty();
 }
 
 std::string label_of(const Method& m) {

@@ -14,5 +14,6 @@ const Names& names() {
 }
 
 bool has_pairs(const std::string& formulation) { return formulation != "tl_stress_points"; }
+double default_control(const std::string& formulation) { return has_pairs(formulation) ? 0 : 1; }
 
 }  // namespace taut::bench

@@ -17,5 +17,7 @@ const Names& names();
 /// Whether a formulation works on pairs of neighbours: operators, kernel, support and pair precision are then
 /// its choices. Stress points have cells instead.
 bool has_pairs(const std::string& formulation);
+/// The strength of zero-energy control that a formulation has when none is given.
+double default_control(const std::string& formulation);
 
 }  // namespace taut::bench
