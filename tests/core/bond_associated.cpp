@@ -9,9 +9,6 @@ using namespace taut;
 
 namespace {
 
-template <int D>
-using Dim = std::integral_constant<int, D>;
-
 constexpr double E = 1e6;
 
 template <int D>

@@ -9,22 +9,6 @@ using namespace taut;
 
 namespace {
 
-template <int D>
-using Dim = std::integral_constant<int, D>;
-
-// About the origin, as a vector in space.
-template <int D>
-Vec<3> angular_momentum(const Simulation<D>& s) {
-  Vec<3> L = Vec<3>::Zero();
-  for (std::size_t i = 0; i < s.size(); ++i) {
-    Vec<3> x = Vec<3>::Zero(), v = Vec<3>::Zero();
-    x.head<D>() = s.position(i);
-    v.head<D>() = s.velocity(i);
-    L += s.mass(i) * x.cross(v);
-  }
-  return L;
-}
-
 // Strains of some per cent and a flight of the whole body, without constraints, loads or damping.
 template <int D>
 void fly(Simulation<D>& s) {

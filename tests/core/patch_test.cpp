@@ -13,9 +13,6 @@ namespace {
 constexpr PairPrecision precisions[] = {PairPrecision::single_precision, PairPrecision::double_precision};
 
 template <int D>
-using Dim = std::integral_constant<int, D>;
-
-template <int D>
 Mat<D> some_gradient() {
   Mat<3> A;
   A << 1.3, 0.4, -0.2, -0.1, 0.8, 0.3, 0.25, -0.15, 1.1;

@@ -7,9 +7,6 @@ using namespace taut;
 
 namespace {
 
-template <int D>
-using Dim = std::integral_constant<int, D>;
-
 // Odd along its own axis, even along the others: symmetric about all coordinate planes.
 template <int D>
 Vec<D> symmetric_motion(const Vec<D>& X, double size) {

@@ -11,9 +11,6 @@ using namespace taut;
 
 namespace {
 
-template <int D>
-using Dim = std::integral_constant<int, D>;
-
 template <int D, class Run>
 std::vector<Vec<D>> positions(int threads, const Cloud<D>& cloud, const char* material, const Method& method,
                               Run&& run) {

@@ -9,9 +9,6 @@ using namespace taut;
 
 namespace {
 
-template <int D>
-using Dim = std::integral_constant<int, D>;
-
 enum class Sides { free, symmetric };
 
 struct Vibration {
