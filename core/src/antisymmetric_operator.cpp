@@ -42,9 +42,9 @@ void make_antisymmetric(const Particles<D>& p, const PairList& pairs, int iterat
   });
   make_matrices();
 
+  ClosureSystem<D> system(p, pairs, op);
   for (int done = 0; done < iterations; done += sweep) {
     p.mirror.tensors(op.M);
-    ClosureSystem<D> system(p, pairs, op);
     const Field lambda = system.solve(std::min(sweep, iterations - done)).first;
     transform_vectors(p, pairs, op, [&](Index a, Index b, std::int64_t k, int lane) -> Vec<D> {
       const Vec<D> X = p.X.template vec<D>(b) - p.X.template vec<D>(a);

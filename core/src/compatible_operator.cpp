@@ -12,6 +12,7 @@ bool is_closed(const Particles<D>& p, const PairList& pairs, const PairOperator<
   // The forces of a unit stress, which the areas take up.
   Field stress(static_cast<std::size_t>(p.total), D * D);
   const Index slices = (p.n + lanes - 1) / lanes;
+#pragma omp parallel for schedule(static)
   for (Index s = 0; s < slices; ++s) {
     const SliceCoefficients<D> of(op, s);
     const Pack V = load(p.V.component(0) + s * lanes);

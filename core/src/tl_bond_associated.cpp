@@ -225,11 +225,8 @@ auto TlBondAssociated<D>::bond_pass(const Columns<D>& x, const Stresses& stresse
       const SliceCoefficients<D> of(op_, s);
       for (int d = 0; d < D; ++d) {
         store(p_.a.component(d) + i, force[d]);
-        for (int e = 0; e < D; ++e) {
-          Pack q = moment[d * D] * of.matrix(e);
-          for (int j = 1; j < D; ++j) q += moment[d * D + j] * of.matrix(j * D + e);
-          store(Q_.component(d * D + e) + i, 0.5 * q);
-        }
+        for (int e = 0; e < D; ++e)
+          store(Q_.component(d * D + e) + i, 0.5 * of.times_matrix(moment + d * D, e));
       }
     }
 #pragma omp critical

@@ -90,12 +90,11 @@ void TlDisplacement<D>::gradient_pass(const Payload& payload) {
         const double* P = P_of_chunk + (s - first) * lanes;
         const SliceCoefficients<D> of(op_, s);
         const Pack Vi = load(V + i);
-        for (int d = 0; d < D; ++d)
-          for (int e = 0; e < D; ++e) {
-            Pack q = load(P + (d * D) * chunk) * of.matrix(e);
-            for (int j = 1; j < D; ++j) q += load(P + (d * D + j) * chunk) * of.matrix(j * D + e);
-            store(Q[d * D + e] + i, q * Vi);
-          }
+        for (int d = 0; d < D; ++d) {
+          Pack row[D];
+          for (int j = 0; j < D; ++j) row[j] = load(P + (d * D + j) * chunk);
+          for (int e = 0; e < D; ++e) store(Q[d * D + e] + i, of.times_matrix(row, e) * Vi);
+        }
         if (control_) control_->add_stress(s, x, of, Q_);
       }
     }
@@ -207,11 +206,8 @@ double TlDisplacement<D>::largest_frequency() {
         gradient_of_slice<D>(s, pairs_, payload, yc, of, H);
         const Pack factor = load(stiffness.component(0) + s * lanes);
         for (int d = 0; d < D; ++d)
-          for (int e = 0; e < D; ++e) {
-            Pack q = H[d * D] * of.matrix(e);
-            for (int j = 1; j < D; ++j) q += H[d * D + j] * of.matrix(j * D + e);
-            store(Q_.component(d * D + e) + s * lanes, q * factor);
-          }
+          for (int e = 0; e < D; ++e)
+            store(Q_.component(d * D + e) + s * lanes, of.times_matrix(H + d * D, e) * factor);
         if (control_) {
           control_->keep(s, H);
           control_->add_stress(s, yc, of, Q_);

@@ -10,8 +10,8 @@
 #include <taut/internal/cell_strips.hpp>
 #include <taut/internal/describe.hpp>
 #include <taut/internal/formulations.hpp>
+#include <taut/internal/hyperelastic_form.hpp>
 #include <taut/internal/power_iteration.hpp>
-#include <taut/internal/stretch_bounds.hpp>
 
 namespace taut {
 
@@ -30,8 +30,9 @@ namespace {
 /// With k = E / (3 D) sum |b_m|^2 / V a bent square, or cube, has the energy of a beam: no shear, and a
 /// section that is free to contract (assumed strain: Belytschko & Bindeman 1991, 1993).
 template <int D>
-class TlStressPoints final : public Formulation<D> {
-  using Base = Formulation<D>;
+class TlStressPoints final : public HyperelasticForm<D> {
+  using Base = HyperelasticForm<D>;
+  using Base::materials_;
   using Base::p_;
   using Strip = typename CellStrips<D>::Strip;
   using Visit = typename CellStrips<D>::Visit;
@@ -42,15 +43,6 @@ class TlStressPoints final : public Formulation<D> {
   explicit TlStressPoints(const FormulationSetup<D>& setup);
 
   void update_accelerations(double) override;
-
-  double stable_step() const override {
-    double ratio = 1;
-    for (const auto* material : materials_)
-      ratio =
-          std::max(ratio, material->wave_speed(stretch_.min, stretch_.max, stretch_.J_min, stretch_.J_max) /
-                              material->wave_speed());
-    return 2 / (frequency_ * ratio);
-  }
 
   Mat<D> deformation_gradient(Index i) const override {
     return mean(i, [](const Mat<D>& F, const Mat<D>&) { return F; });
@@ -99,27 +91,17 @@ class TlStressPoints final : public Formulation<D> {
   void share_out();
   double largest_frequency();
 
-  std::vector<const Hyperelastic<D>*> materials_;
   std::vector<double> stiffness_;  // of the first hourglass mode, over sum |b_m|^2 / V, of each material
   CellStrips<D> cells_;
   std::vector<std::vector<Visit>> parts_;  // one a thread
   int threads_ = 0;                        // that parts_ are made for
   Field per_mass_;
-  StretchBounds stretch_;
-  double frequency_ = 0;
 };
 
 template <int D>
 TlStressPoints<D>::TlStressPoints(const FormulationSetup<D>& setup) : Base(setup) {
   const double control = setup.method.zero_energy_control.value_or(1);
-  for (const auto& material : p_.materials) {
-    const auto* hyperelastic = dynamic_cast<const Hyperelastic<D>*>(material.get());
-    if (!hyperelastic)
-      throw InputError(
-          fmt::format("tl_stress_points needs a hyperelastic material; \"{}\" gives stress rates. Valid: "
-                      "linear_elastic, st_venant_kirchhoff, corotated_svk, neo_hookean",
-                      material->name()));
-    materials_.push_back(hyperelastic);
+  for (const auto* material : materials_) {
     const MaterialParameters& m = material->parameters();
     const double bending = D == 2 && m.plane == Plane::strain ? m.E / (1 - m.nu * m.nu) : m.E;
     stiffness_.push_back(control * bending / (3 * D));
@@ -137,7 +119,7 @@ TlStressPoints<D>::TlStressPoints(const FormulationSetup<D>& setup) : Base(setup
   // Cells end at symmetry planes, and so does the mass that they move.
   for (Index i = 0; i < p_.n; ++i)
     per_mass_.component(0)[i] = 1 / (p_.m.component(0)[i] * p_.modelled_share(i));
-  frequency_ = largest_frequency();
+  this->frequency_ = largest_frequency();
 }
 
 template <int D>
@@ -282,18 +264,14 @@ void TlStressPoints<D>::update_accelerations(double t) {
 #pragma omp critical
     extremes.merge(law.extremes);
   }
-  stretch_ = extremes.bounds();
-  if (inverted < p_.n && !this->failure_)
-    this->failure_ =
-        Failure{p_.x.template vec<D>(inverted).allFinite() ? "J <= 0" : "not a number", inverted};
+  this->stretch_ = extremes.bounds();
+  if (inverted < p_.n) this->fail_inverted(inverted);
   this->finish_accelerations(t);
 }
 
 template <int D>
 double TlStressPoints<D>::strain_energy() const {
-  for (const auto* material : materials_)
-    if (!material->has_energy())
-      throw InputError(fmt::format("material \"{}\" has no stored energy", material->name()));
+  this->need_energies();
   const auto strips = cells_.strips();
   std::vector<double> energy(strips.size(), 0.0);
   const Columns<D> x(p_.x);

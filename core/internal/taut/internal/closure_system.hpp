@@ -34,6 +34,7 @@ class ClosureSystem {
       first_moment_.template set_vec<D>(a, m);
     }
     p.mirror.tensors(moments_);
+    inverse_diagonal_ = inverse_diagonal();
   }
 
   std::size_t size() const { return static_cast<std::size_t>(p_.total); }
@@ -104,19 +105,18 @@ class ClosureSystem {
   std::pair<Field, double> solve(int iterations) {
     // Residuals and images are zero beyond the bodies' particles, so sums may run over whole fields.
     Field lambda(size(), D), residual = closure_defect(), direction(size(), D), image(size(), D);
-    const Field inverse = inverse_diagonal();
     const double before = std::sqrt(dot(residual.flat(), residual.flat()));
     // Round-off of the closure of a cell's faces: below it there is nothing to solve for.
     const double negligible = 1e-14 * std::pow(p_.dx, D - 1) * std::sqrt(static_cast<double>(p_.n));
     double rho = 0, now = before;
     for (int it = 0; it < iterations && now > negligible; ++it) {
-      const double next = weighted_dot(inverse.flat(), residual.flat(), residual.flat());
+      const double next = weighted_dot(inverse_diagonal_.flat(), residual.flat(), residual.flat());
       const double beta = it == 0 ? 0 : next / rho;
       rho = next;
       const auto values = static_cast<std::int64_t>(direction.flat().size());
 #pragma omp parallel for simd schedule(static)
       for (std::int64_t i = 0; i < values; ++i)
-        direction.data()[i] = inverse.data()[i] * residual.data()[i] + beta * direction.data()[i];
+        direction.data()[i] = inverse_diagonal_.data()[i] * residual.data()[i] + beta * direction.data()[i];
       apply(direction, image);
       const double alpha = rho / dot(direction.flat(), image.flat());
       if (!std::isfinite(alpha)) break;
@@ -174,7 +174,7 @@ class ClosureSystem {
   const Particles<D>& p_;
   const PairList& pairs_;
   const PairOperator<D>& op_;
-  Field moments_, mu_, first_moment_;
+  Field moments_, mu_, first_moment_, inverse_diagonal_;
 };
 
 /// The system has a solution only if the areas close: sum B = 0.

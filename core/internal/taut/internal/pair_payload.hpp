@@ -130,6 +130,12 @@ struct SliceCoefficients {
     }
   }
   TAUT_INLINE Pack matrix(int c) const { return load(M + static_cast<std::size_t>(c) * stride_M); }
+  /// Component e of row · M.
+  TAUT_INLINE Pack times_matrix(const Pack* row, int e) const {
+    Pack product = row[0] * matrix(e);
+    for (int j = 1; j < D; ++j) product += row[j] * matrix(j * D + e);
+    return product;
+  }
   TAUT_INLINE Pack sum(int d) const { return load(s + static_cast<std::size_t>(d) * stride_s); }
 };
 

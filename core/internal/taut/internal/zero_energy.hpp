@@ -60,10 +60,8 @@ class ZeroEnergyControl {
     });
     for (int d = 0; d < D; ++d)
       for (int e = 0; e < D; ++e) {
-        Pack q = moment[d * D] * of.matrix(e);
-        for (int j = 1; j < D; ++j) q += moment[d * D + j] * of.matrix(j * D + e);
         double* to = Q.component(d * D + e) + s * lanes;
-        store(to, load(to) - 0.5 * q);
+        store(to, load(to) - 0.5 * of.times_matrix(moment + d * D, e));
       }
   }
 
