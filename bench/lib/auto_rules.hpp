@@ -15,10 +15,13 @@ struct AutoFacts {
   bool from_file = false;       ///< the particles come from a CSV file
   bool box = false;             ///< the body is a box, whose faces a lattice meets
   bool jittered = false;        ///< particles are off the places of the lattice
+  bool cells = false;           ///< a node-centred lattice, jittered or not: its cells can carry the stress
+  bool asks_for_pairs = false;  ///< the run gives operators, a kernel or another key that means pairs
   bool free_thickness = false;  ///< plane stress: volume may change out of plane; 1D: there is no other way
   double nu = 0;                ///< largest Poisson's ratio of the run
 };
-AutoFacts facts_of(const Scene& scene, const RunSpec& run);
+/// `given`: the keys that the run sets itself.
+AutoFacts facts_of(const Scene& scene, const RunSpec& run, const std::set<std::string>& given = {});
 
 /// Of the rules of one key the first that applies sets it. A rule without a value only says something.
 struct AutoRule {

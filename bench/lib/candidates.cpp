@@ -42,7 +42,7 @@ std::string label_of(const Method& m) {
 }
 
 /// Methods worth trying where the material gives stresses: what convergence studies found on lattices and on
-/// jittered clouds, without those that no study found good at anything.
+/// jittered clouds, without those that no study found good at anything. The first is the choice of `auto`.
 std::vector<Method> ladder(const AutoFacts& facts) {
   Method chosen;
   apply_auto_rules(facts, {}, chosen);

@@ -102,9 +102,9 @@ void choose_methods(const TableReader& top, Scene& scene) {
     if (run.method.formulation != "auto") continue;
     const TableReader reader(nodes[i], "run", keys_of("run"));
     std::set<std::string> given;
-    for (const AutoRule& rule : auto_rules())
-      if (rule.key != std::string("formulation") && reader.has(rule.key)) given.insert(rule.key);
-    run.automatic = apply_auto_rules(facts_of(scene, run), given, run.method);
+    for (const std::string& key : keys_of("run"))
+      if (key != "formulation" && reader.has(key)) given.insert(key);
+    run.automatic = apply_auto_rules(facts_of(scene, run, given), given, run.method);
   }
 }
 

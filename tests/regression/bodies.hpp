@@ -15,6 +15,7 @@ struct Case {
   const char* material = "st_venant_kirchhoff";
   Lattice lattice = Lattice::node_centred;
   double jitter = 0;
+  Plane plane = Plane::stress;
   Method method{};
   RelaxOptions solve{};
 };
@@ -34,7 +35,7 @@ inline Outcome solve(const Case& c) {
   const bool cells = c.lattice == Lattice::cell_centred;
   if (cells) lattice.layers[0] = {3, 0};
   Simulation<2> simulation(make_cloud(box<2>({0, 0}, {L, H}), lattice),
-                           make_material<2>(c.material, {.E = E, .nu = c.nu, .density = 1000, .plane = Plane::stress}), c.method);
+                           make_material<2>(c.material, {.E = E, .nu = c.nu, .density = 1000, .plane = c.plane}), c.method);
   if (cells)
     simulation.clamp([](const Vec<2>& X) { return X[0] < 0; });
   else

@@ -39,8 +39,30 @@ bool says(const RunSpec& run, const std::string& what) {
 
 }  // namespace
 
-TEST_CASE("auto takes the cheap set-up on a plain lattice in a box") {
-  const RunSpec run = run_with("formulation = \"auto\"\n");
+TEST_CASE("auto takes stress points on node-centred lattices, in steps and jittered too") {
+  const std::string disc = "type = \"sphere\"\ncentre = [0.1, 0.025]\nradius = 0.1";
+  const std::string box = "type = \"box\"\nmin = [0.0, 0.0]\nmax = [0.2, 0.05]";
+  for (const RunSpec& run :
+       {run_with("formulation = \"auto\"\n"), run_with("formulation = \"auto\"\njitter = 0.1\n"),
+        run_with("formulation = \"auto\"\n", box, disc)}) {
+    CHECK(run.method.formulation == "tl_stress_points");
+    CHECK(run.method.zero_energy_control == 1);  // without it hourglasses have no stiffness
+    CHECK(says(run, "formulation = tl_stress_points"));
+    CHECK(!says(run, "operators ="));
+    CHECK(!says(run, "lock"));
+  }
+  CHECK(run_with("formulation = \"auto\"\nzero_energy_control = 0.5\n").method.zero_energy_control == 0.5);
+}
+
+TEST_CASE("auto takes pairs where the run gives keys of pairs") {
+  for (const char* key : {"operators = \"quadratic\"", "kernel = \"lucy\"", "support_dx = 1.6",
+                          "neighbours = \"kd_tree\"", "pair_precision = \"double\""})
+    CHECK(run_with("formulation = \"auto\"\n" + std::string(key) + '\n').method.formulation ==
+          "tl_displacement");
+}
+
+TEST_CASE("auto takes the cheap set-up on a plain lattice in a box without stress points") {
+  const RunSpec run = run_with("formulation = \"auto\"\nlattice = \"cell_centred\"\n");
   CHECK(run.method.formulation == "tl_displacement");
   CHECK(run.method.operators == "corrected");
   CHECK(run.method.kernel == "quadratic");
@@ -51,12 +73,12 @@ TEST_CASE("auto takes the cheap set-up on a plain lattice in a box") {
 }
 
 TEST_CASE("auto takes operators that close where particles are irregular") {
-  const RunSpec jittered = run_with("formulation = \"auto\"\njitter = 0.1\n");
+  const RunSpec jittered = run_with("formulation = \"auto\"\nlattice = \"cell_centred\"\njitter = 0.1\n");
   CHECK(jittered.method.operators == "antisymmetric");
   CHECK(jittered.method.kernel == "quadratic");
-  const RunSpec disc =
-      run_with("formulation = \"auto\"\n", "type = \"box\"\nmin = [0.0, 0.0]\nmax = [0.2, 0.05]",
-               "type = \"sphere\"\ncentre = [0.1, 0.025]\nradius = 0.1");
+  const RunSpec disc = run_with("formulation = \"auto\"\nlattice = \"cell_centred\"\n",
+                                "type = \"box\"\nmin = [0.0, 0.0]\nmax = [0.2, 0.05]",
+                                "type = \"sphere\"\ncentre = [0.1, 0.025]\nradius = 0.1");
   CHECK(disc.method.operators == "compatible");
   const RunSpec cloud =
       run_with("formulation = \"auto\"\n",
@@ -75,7 +97,7 @@ TEST_CASE("auto takes an updated Lagrangian form for stress rates, the run's own
   CHECK(!says(run, "operators ="));
   const RunSpec other = run_with("formulation = \"auto\"\nmaterial = \"neo_hookean\"\n",
                                  "\"st_venant_kirchhoff\"", "\"hypoelastic\"");
-  CHECK(other.method.formulation == "tl_displacement");
+  CHECK(other.method.formulation == "tl_stress_points");
 }
 
 TEST_CASE("auto leaves what the run gives") {
@@ -87,19 +109,23 @@ TEST_CASE("auto leaves what the run gives") {
 }
 
 TEST_CASE("auto warns of locking where the thickness is not free, for swept ratios too") {
-  const std::string run = "formulation = \"auto\"\n";
+  const std::string run = "formulation = \"auto\"\nlattice = \"cell_centred\"\n";
   CHECK(says(run_with(run, "nu = 0.3\ndensity = 1000.0\nplane = \"stress\"", "nu = 0.45\ndensity = 1000.0"),
              "lock"));
   CHECK(!says(run_with(run, "nu = 0.3", "nu = 0.45"), "lock"));
   CHECK(!says(run_with(run, "plane = \"stress\"", "plane = \"strain\""), "lock"));
   CHECK(says(run_with(run + "[sweep]\nnu = [0.0, 0.49]\n", "plane = \"stress\"", "plane = \"strain\""),
              "lock"));
+  // Cells do not lock, and the note says so.
+  CHECK(says(run_with("formulation = \"auto\"\n[sweep]\nnu = [0.0, 0.49]\n", "plane = \"stress\"",
+                      "plane = \"strain\""),
+             "does not lock"));
 }
 
 TEST_CASE("probes can be kept to the formulation that auto chose") {
   const std::string text =
       replaced(replaced(test::good_scene, method_keys, "formulation = \"auto\"\n"), "at = [0.2, 0.025]",
-               "at = [0.2, 0.025]\nonly = { formulation = \"tl_displacement\" }");
+               "at = [0.2, 0.025]\nonly = { formulation = \"tl_stress_points\" }");
   const Scene scene = parse_scene(text, "auto.toml");
   CHECK(wanted(scene.probes[0], scene.runs[0], {}));
 }

@@ -139,15 +139,17 @@ TEST_CASE("the scene's runs are candidates, once each") {
   const auto all = candidates_of(scene, true, left_out);
   CHECK(left_out.empty());
   CHECK(all.front().run.label == "total");
-  CHECK(all.size() == 6);
+  CHECK(all.size() == 7);
   CHECK(std::count_if(all.begin(), all.end(), [](const Candidate& c) {
-          return c.run.method.operators == "corrected" && c.run.method.kernel == "wendland_c2";
+          const Method& m = c.run.method;
+          return m.formulation == "tl_displacement" && m.operators == "corrected" &&
+                 m.kernel == "wendland_c2";
         }) == 1);
 
   const Scene other = parse_scene(test::good_scene + "material = \"neo_hookean\"\n", "other.toml");
-  CHECK(candidates_of(other, true, left_out).size() == 7);
+  CHECK(candidates_of(other, true, left_out).size() == 8);
   CHECK(left_out.empty());
-  CHECK(candidates_of(other, false, left_out).size() == 6);  // nothing tells which material is right
+  CHECK(candidates_of(other, false, left_out).size() == 7);  // nothing tells which material is right
   CHECK(left_out.size() == 1);
 }
 
@@ -184,7 +186,7 @@ TEST_CASE("--tolerance finds, verifies and reports a method for a body with a re
   CHECK(outcome.out.find("the cheapest that meets 1 % is ") != std::string::npos);
   const std::vector<Row> rows = read_results(folder.path / "result/results.csv");
   CHECK(std::count_if(rows.begin(), rows.end(), [](const Row& r) { return r.quantity == "pilot_tip_ux"; }) ==
-        12);
+        14);
   const auto chosen =
       std::find_if(rows.begin(), rows.end(), [](const Row& r) { return r.quantity == "chosen_tip_ux"; });
   REQUIRE(chosen != rows.end());
