@@ -132,28 +132,64 @@ std::optional<double> error_size(const Row& row) {
   return std::abs(*row.error);
 }
 
+/// Colours tell operators apart, marks what is done with them.
+int colour_of(const Method& m) {
+  const std::vector<std::string>& operators = names().operators;
+  const auto found =
+      has_pairs(m.formulation) ? std::find(operators.begin(), operators.end(), m.operators) : operators.end();
+  return static_cast<int>(found - operators.begin());
+}
+
+const std::vector<std::string>& mark_names() {
+  static const std::vector<std::string> all = {"R = 1.5 dx", "R = 2.4 dx", "control 1", "bond-associated"};
+  return all;
+}
+int mark_of(const Method& m) {
+  if (!has_pairs(m.formulation)) return 0;
+  if (m.formulation != "tl_displacement") return 3;
+  return m.zero_energy_control ? 2 : m.support_dx > 2;
+}
+
+/// Series without points, so that the legend has a row for each colour and each mark.
+void add_legend(Chart& chart, const std::vector<const Choice*>& shown) {
+  std::vector<std::string> of_colour = names().operators;
+  of_colour.emplace_back("stress points");
+  const auto used = [&](auto what) {
+    return std::any_of(shown.begin(), shown.end(), [&](const Choice* c) { return what(c->method); });
+  };
+  const auto add = [&](const std::string& label, int colour, int mark) {
+    chart.series.push_back({label, Series::Style::scatter, colour, {}, {}, {}, true, mark});
+  };
+  for (int c = 0; c < static_cast<int>(of_colour.size()); ++c)
+    if (used([&](const Method& m) { return colour_of(m) == c; }))
+      add(of_colour[static_cast<std::size_t>(c)], c, 0);
+  for (int k = 0; k < static_cast<int>(mark_names().size()); ++k)
+    if (used([&](const Method& m) { return has_pairs(m.formulation) && mark_of(m) == k; }))
+      add(mark_names()[static_cast<std::size_t>(k)], -1, k);
+}
+
 void report(const Body& body, bool jittered, const std::vector<Choice>& choices, int repeats,
             Section& section) {
   const char* cloud = jittered ? "jittered" : "lattice";
   const std::string cost_names[] = {"loop time [s]", "steps × pairs"};
   for (int kind = 0; kind < 2; ++kind) {
-    Chart chart{fmt::format("frontier_{}_{}_{}", body.name, cloud, kind == 0 ? "time" : "work"),
-                fmt::format("Error against {}: {}, {}", kind == 0 ? "loop time" : "pair evaluations",
-                            body.what, cloud),
-                "Each mark is one combination of operators, support radius, zero-energy control, kernel, "
-                "spacing and pair precision; the line is the Pareto front. "
-                "Down and left is better.",
-                cost_names[kind],
-                "|error| [%]",
-                true,
-                true,
-                false,
-                {}};
+    Chart chart{
+        fmt::format("frontier_{}_{}_{}", body.name, cloud, kind == 0 ? "time" : "work"),
+        fmt::format("Error against {}: {}, {}", kind == 0 ? "loop time" : "pair evaluations", body.what,
+                    cloud),
+        "Each mark is one combination of operators, support radius, zero-energy control, kernel, "
+        "spacing and pair precision; the line is the Pareto front, labelled where a method enters it. "
+        "Down and left is better.",
+        cost_names[kind],
+        "|error| [%]",
+        true,
+        true,
+        false,
+        {}};
     // First, so that the marks stand on it.
     chart.series.push_back({"Pareto front", Series::Style::truth, 0, {}, {}, {}, false});
     std::vector<double> cost, error;
     std::vector<const Choice*> shown;
-    std::vector<std::string> labels;
     for (const Choice& c : choices) {
       const auto e = error_size(c.row);
       if (c.jittered != jittered || !e || *e == 0) continue;
@@ -162,24 +198,29 @@ void report(const Body& body, bool jittered, const std::vector<Choice>& choices,
       error.push_back(100 * *e);
       shown.push_back(&c);
       const std::string label = label_of(c.method);
-      auto found = std::find(labels.begin(), labels.end(), label);
-      if (found == labels.end()) {
-        labels.push_back(label);
-        found = labels.end() - 1;
+      auto series = std::find_if(chart.series.begin(), chart.series.end(),
+                                 [&](const Series& s) { return s.label == label; });
+      if (series == chart.series.end()) {
         chart.series.push_back(
-            {label, Series::Style::scatter, static_cast<int>(labels.size()) - 1, {}, {}, {}, true});
+            {label, Series::Style::scatter, colour_of(c.method), {}, {}, {}, true, mark_of(c.method), false});
+        series = chart.series.end() - 1;
       }
-      Series& series = chart.series[static_cast<std::size_t>(found - labels.begin()) + 1];
-      series.x.push_back(cost.back()), series.y.push_back(error.back());
+      series->x.push_back(cost.back()), series->y.push_back(error.back());
     }
+    add_legend(chart, shown);
     TextTable table{
         fmt::format("Pareto front: {}, {}", body.what, cloud),
         fmt::format("Loop time: median of up to {} repeats.", repeats),
         {"operators, support", "kernel", "precision", "dx", "error", "loop time", "steps × pairs"},
         {}};
+    std::string on_front;
     for (const std::size_t i : pareto_front(cost, error)) {
       chart.series[0].x.push_back(cost[i]), chart.series[0].y.push_back(error[i]);
       const Choice& c = *shown[i];
+      if (label_of(c.method) != on_front) {
+        on_front = label_of(c.method);
+        chart.labels.push_back({cost[i], error[i], fmt::format("{}, {}", on_front, body.levels[c.level])});
+      }
       table.rows.push_back(
           {{label_of(c.method), ""},
            {c.row.kernel, ""},

@@ -11,6 +11,8 @@
 namespace taut::bench {
 namespace {
 
+constexpr std::size_t chart_width = 860;
+
 struct Extent {
   double min = std::numeric_limits<double>::max(), max = -std::numeric_limits<double>::max();
   void add(double v, bool log) {
@@ -45,7 +47,7 @@ std::string csv_of(const Chart& chart) {
 
 std::string style_of(const Series& s) {
   static constexpr std::array<int, 7> filled = {7, 5, 9, 13, 11, 15, 7}, hollow = {6, 4, 8, 12, 10, 14, 6};
-  const auto mark = static_cast<std::size_t>(s.colour) % filled.size();
+  const auto mark = static_cast<std::size_t>(s.mark < 0 ? std::max(s.colour, 0) : s.mark) % filled.size();
   switch (s.style) {
     case Series::Style::truth:
       return s.marks ? "with linespoints lc rgb '#111111' lw 2 pt 1 ps 0.9"
@@ -92,14 +94,17 @@ std::string named_ticks(const std::vector<std::string>& names) {
   return '(' + ticks + ')';
 }
 
-/// Columns of the legend: one where labels are long.
-int legend_columns(const Chart& chart) {
-  std::size_t longest = 0;
-  for (const Series& s : chart.series) longest = std::max(longest, s.label.size());
-  return longest > 38 || chart.series.size() < 4 ? 1 : 2;
-}
+/// As many columns in the legend as labels leave room for.
 int legend_rows(const Chart& chart) {
-  const int entries = static_cast<int>(chart.series.size()), columns = legend_columns(chart);
+  std::size_t longest = 0;
+  int entries = 0;
+  for (const Series& s : chart.series) {
+    if (s.label.empty() || !s.in_legend) continue;
+    longest = std::max(longest, s.label.size());
+    ++entries;
+  }
+  const int room = static_cast<int>(chart_width / (7 * longest + 60));
+  const int columns = entries < 4 ? 1 : std::clamp(room, 1, 4);
   return (entries + columns - 1) / columns;
 }
 
@@ -144,6 +149,10 @@ std::string script_of(const Chart& chart) {
     out += fmt::format("set label 'broke:' at graph 0.01, graph {} font ',11' textcolor rgb '#666666'\n",
                        0.05 + 0.05 * broken);
 
+  for (const ChartLabel& label : chart.labels)
+    out += fmt::format("set label {} at {},{} left offset 0.8,0.1 font ',11' textcolor rgb '#333333' front\n",
+                       quoted(label.text), label.x, label.y);
+
   std::string plots;
   int row = 0, block = 0, bar = 0;
   const auto add = [&](const std::string& what) {
@@ -156,7 +165,7 @@ std::string script_of(const Chart& chart) {
     for (std::size_t i = 0; i < s.x.size(); ++i)
       if (std::isfinite(s.x[i]) && std::isfinite(s.y[i]))
         data += fmt::format("{} {}\n", s.x[i] + beside, s.y[i]);
-    const std::string title = s.label.empty() ? "notitle" : "title " + quoted(s.label);
+    const std::string title = s.label.empty() || !s.in_legend ? "notitle" : "title " + quoted(s.label);
     const std::string name = fmt::format("$d{}", block++);
     out += name + " << EOD\n" + (data.empty() ? "NaN NaN\n" : data) + "EOD\n";
     add(fmt::format("{} using 1:2 {} {}", name, style_of(s), title));
@@ -181,8 +190,8 @@ std::string script_of(const Chart& chart) {
 
 bool Chart::empty() const {
   return std::all_of(series.begin(), series.end(), [](const Series& s) {
-    const bool ours = s.style == Series::Style::run || s.style == Series::Style::scatter ||
-                      s.style == Series::Style::bar;
+    const bool ours =
+        s.style == Series::Style::run || s.style == Series::Style::scatter || s.style == Series::Style::bar;
     return !ours || (s.x.empty() && s.broke_x.empty());
   });
 }
@@ -191,14 +200,15 @@ std::string run_colour(int index) {
   // One more than there are marks, so that colour and mark together tell 56 runs apart.
   static constexpr std::array<const char*, 8> colours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
                                                          "#E69F00", "#56B4E9", "#8C564B", "#7F7F7F"};
-  return colours[static_cast<std::size_t>(index) % colours.size()];
+  return index < 0 ? "#111111" : colours[static_cast<std::size_t>(index) % colours.size()];
 }
 
 bool write_chart(const Chart& chart, const std::filesystem::path& folder, std::string& why) {
   write_file(folder / (chart.name + ".csv"), csv_of(chart));
   const int rows = legend_rows(chart);
-  const std::string terminal = fmt::format(
-      "svg size 860,{} font 'sans-serif,13' noenhanced background '#ffffff' rounded", 440 + 20 * rows);
+  const std::string terminal =
+      fmt::format("svg size {},{} font 'sans-serif,13' noenhanced background '#ffffff' rounded", chart_width,
+                  440 + 20 * rows);
   return run_gnuplot(terminal, script_of(chart), folder / (chart.name + ".svg"), why);
 }
 

@@ -19,10 +19,18 @@ struct Series {
   };
   std::string label;
   Style style = Style::run;
-  int colour = 0;  ///< index of a run: the same colour in every chart
+  int colour = 0;  ///< index of a run: the same colour in every chart; −1: black
   std::vector<double> x, y;
   std::vector<double> broke_x;  ///< where the run broke: crosses along the lower edge
   bool marks = true;
+  int mark = -1;          ///< index of a mark; −1: that of the colour
+  bool in_legend = true;  ///< where it has a label
+};
+
+/// Text right of a place in a chart.
+struct ChartLabel {
+  double x = 0, y = 0;
+  std::string text;
 };
 
 struct Chart {
@@ -31,13 +39,14 @@ struct Chart {
   bool log_x = false, log_y = false;
   bool line_at_zero = false;
   std::vector<Series> series = {};
-  std::vector<double> x_ticks = {};  ///< on a logarithmic axis, instead of automatic ones
+  std::vector<double> x_ticks = {};       ///< on a logarithmic axis, instead of automatic ones
   std::vector<std::string> x_names = {};  ///< what stands at x = 0, 1, …, instead of numbers
+  std::vector<ChartLabel> labels = {};
 
   bool empty() const;
 };
 
-/// Colour of a run, "#rrggbb": Okabe and Ito's set, told apart by colour-blind readers too.
+/// Colour of a run, "#rrggbb": Okabe and Ito's set, told apart by colour-blind readers too. Black below 0.
 std::string run_colour(int index);
 
 /// Writes FOLDER/NAME.csv and, where gnuplot works, FOLDER/NAME.svg. False without the SVG. \throws RunError
