@@ -2,6 +2,7 @@
 #include <cmath>
 #include <taut/internal/formulations.hpp>
 #include <taut/internal/power_iteration.hpp>
+#include <taut/internal/rest_stiffness.hpp>
 #include <taut/internal/total_lagrangian.hpp>
 
 namespace taut {
@@ -40,7 +41,8 @@ class TlBondAssociated final : public TotalLagrangian<D> {
     if (setup.method.zero_energy_control > 0)
       throw InputError("tl_bond_associated has no zero-energy modes: zero_energy_control must be 0");
     share_volumes();
-    this->frequency_ = largest_frequency();
+    this->frequency_ = highest_frequency<D>(
+        materials_, [this](const std::vector<IsotropicStiffness>& laws) { return stiffest_mode(laws); });
   }
 
   void update_accelerations(double t) override {
@@ -89,7 +91,7 @@ class TlBondAssociated final : public TotalLagrangian<D> {
   void force_pass(const Payload& payload);
   template <class Stresses>
   Seen accelerations(const Columns<D>& x, bool offset, const Stresses& stresses);
-  double largest_frequency();
+  double stiffest_mode(const std::vector<IsotropicStiffness>& laws);
 
   Field F_;
   Field share_;  ///< for each material V_a / n_a of its particles, zero of others
@@ -305,38 +307,30 @@ double TlBondAssociated<D>::strain_energy() const {
   return total;
 }
 
-// Highest frequency [rad/s] of the body at rest, by power iteration. Elastic bodies have no mode above that
-// of a scalar medium of their pressure-wave modulus, in any state of no faster waves; but a bond's gradient
-// is not that of any field, so nearly incompressible laws can be stiffer at rest.
+// Largest eigenvalue of M^-1 K of the body at rest.
 template <int D>
-double TlBondAssociated<D>::largest_frequency() {
+double TlBondAssociated<D>::stiffest_mode(const std::vector<IsotropicStiffness>& laws) {
   // Stresses of opposite sign, so that what is left in the accelerations is M^-1 K y.
-  const auto scalar = [this](std::size_t m, int n, const double* H, double* P) {
-    const double modulus = materials_[m]->density() * std::pow(materials_[m]->wave_speed(), 2);
-    for (int c = 0; c < D * D; ++c)
-      for (int i = 0; i < n; ++i) P[c * chunk + i] = -modulus * H[c * chunk + i];
+  const auto stresses = [&laws](std::size_t m, int n, const double* H, double* P) {
+    const IsotropicStiffness& law = laws[m];
+    for (int i = 0; i < n; ++i) {
+      double h[D][D], trace = 0;
+      for (int d = 0; d < D; ++d) {
+        for (int e = 0; e < D; ++e) h[d][e] = H[(d * D + e) * chunk + i];
+        trace += h[d][d];
+      }
+      for (int d = 0; d < D; ++d)
+        for (int e = 0; e < D; ++e)
+          P[(d * D + e) * chunk + i] =
+              -(law.gradient * h[d][e] + law.transpose * h[e][d] + (d == e ? law.trace * trace : 0));
+    }
   };
-  const auto tangent = [this](std::size_t m, int n, const double* H, double* P) {
-    double largest = 0;
-    for (int c = 0; c < D * D; ++c)
-      for (int i = 0; i < n; ++i) largest = std::max(largest, std::abs(H[c * chunk + i]));
-    // Laws are free of stress at rest: what is left is linear in so small a strain.
-    const double to_small = largest > 0 ? 1e-6 / largest : 1;
-    for (int c = 0; c < D * D; ++c)
-      for (int i = 0; i < n; ++i) P[c * chunk + i] = (c % (D + 1) == 0) + to_small * H[c * chunk + i];
-    materials_[m]->stress({n, chunk, P, P, nullptr});
-    for (int c = 0; c < D * D; ++c)
-      for (int i = 0; i < n; ++i) P[c * chunk + i] /= -to_small;
-  };
-  const auto of = [this](const auto& stresses) {
-    return largest_eigenvalue<D>(p_.n, p_.total, p_.m, p_.a, [&](Field& y) {
-      if (!p_.mirror.empty()) p_.mirror.vectors(y);
-      accelerations(Columns<D>(y), false, stresses);
-    });
-  };
-  const double eigenvalue = std::max(of(scalar), of(tangent));
+  const double eigenvalue = largest_eigenvalue<D>(p_.n, p_.total, p_.m, p_.a, [&](Field& y) {
+    if (!p_.mirror.empty()) p_.mirror.vectors(y);
+    accelerations(Columns<D>(y), false, stresses);
+  });
   std::fill(p_.a.flat().begin(), p_.a.flat().end(), 0.0);
-  return std::sqrt(eigenvalue);
+  return eigenvalue;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <optional>
 #include <taut/internal/formulations.hpp>
 #include <taut/internal/power_iteration.hpp>
+#include <taut/internal/rest_stiffness.hpp>
 #include <taut/internal/total_lagrangian.hpp>
 #include <taut/internal/zero_energy.hpp>
 
@@ -28,7 +29,8 @@ class TlDisplacement final : public TotalLagrangian<D> {
   explicit TlDisplacement(const FormulationSetup<D>& setup) : Base(setup) {
     if (const double control = setup.method.zero_energy_control.value_or(0); control > 0)
       control_.emplace(p_, pairs_, this->kernel_, this->h_, control);
-    this->frequency_ = largest_frequency();
+    this->frequency_ = highest_frequency<D>(
+        materials_, [this](const std::vector<IsotropicStiffness>& laws) { return stiffest_mode(laws); });
   }
 
   void update_accelerations(double) override;
@@ -47,7 +49,7 @@ class TlDisplacement final : public TotalLagrangian<D> {
   void gradient_pass(const Payload& payload);
   template <class Payload>
   void force_pass(const Payload& payload);
-  double largest_frequency();
+  double stiffest_mode(const std::vector<IsotropicStiffness>& laws);
 
   std::optional<ZeroEnergyControl<D>> control_;
 };
@@ -183,15 +185,17 @@ double TlDisplacement<D>::strain_energy() const {
   return total;
 }
 
-// Highest frequency [rad/s] of the body at rest, by power iteration on M^-1 G^T (rho c_p^2) V G: an elastic
-// body has no mode above that of a scalar medium of its pressure-wave modulus, whatever the operator and the
-// cloud. The control's own stiffness, which does not depend on the state, is in it.
+// Largest eigenvalue of M^-1 K of the body at rest. The control's own stiffness, which does not depend on the
+// state, is in it.
 template <int D>
-double TlDisplacement<D>::largest_frequency() {
-  Field stiffness(static_cast<std::size_t>(p_.total), 1);  // V rho c_p^2; zero in the padding
+double TlDisplacement<D>::stiffest_mode(const std::vector<IsotropicStiffness>& laws) {
+  Field stiffness(static_cast<std::size_t>(p_.total), 3);  // times V; zero in the padding
   for (Index i = 0; i < p_.n; ++i) {
-    const auto* m = materials_[p_.material[static_cast<std::size_t>(i)]];
-    stiffness.component(0)[i] = p_.V.component(0)[i] * m->density() * m->wave_speed() * m->wave_speed();
+    const IsotropicStiffness& law = laws[p_.material[static_cast<std::size_t>(i)]];
+    const double V = p_.V.component(0)[i];
+    stiffness.component(0)[i] = V * law.trace;
+    stiffness.component(1)[i] = V * law.gradient;
+    stiffness.component(2)[i] = V * law.transpose;
   }
   const Columns<D * D> Q(Q_);
   const double* m = p_.m.component(0);
@@ -204,10 +208,17 @@ double TlDisplacement<D>::largest_frequency() {
         const SliceCoefficients<D> of(op_, s);
         Pack H[D * D];
         gradient_of_slice<D>(s, pairs_, payload, yc, of, H);
-        const Pack factor = load(stiffness.component(0) + s * lanes);
-        for (int d = 0; d < D; ++d)
-          for (int e = 0; e < D; ++e)
-            store(Q_.component(d * D + e) + s * lanes, of.times_matrix(H + d * D, e) * factor);
+        const Pack gradient = load(stiffness.component(1) + s * lanes);
+        const Pack transpose = load(stiffness.component(2) + s * lanes);
+        Pack pressure = H[0];
+        for (int d = 1; d < D; ++d) pressure += H[d * D + d];
+        pressure *= load(stiffness.component(0) + s * lanes);
+        for (int d = 0; d < D; ++d) {
+          Pack row[D];
+          for (int e = 0; e < D; ++e) row[e] = gradient * H[d * D + e] + transpose * H[e * D + d];
+          row[d] += pressure;
+          for (int e = 0; e < D; ++e) store(Q_.component(d * D + e) + s * lanes, of.times_matrix(row, e));
+        }
         if (control_) {
           control_->keep(s, H);
           control_->add_stress(s, yc, of, Q_);
@@ -226,7 +237,7 @@ double TlDisplacement<D>::largest_frequency() {
   };
   const double eigenvalue = largest_eigenvalue<D>(p_.n, p_.total, p_.m, p_.a, apply);
   std::fill(p_.a.flat().begin(), p_.a.flat().end(), 0.0);
-  return std::sqrt(eigenvalue);
+  return eigenvalue;
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <taut/internal/formulations.hpp>
 #include <taut/internal/hyperelastic_form.hpp>
 #include <taut/internal/power_iteration.hpp>
+#include <taut/internal/rest_stiffness.hpp>
 
 namespace taut {
 
@@ -66,9 +67,9 @@ class TlStressPoints final : public HyperelasticForm<D> {
 
  private:
   /// What a sweep over the cells makes of their gradients: the body's stresses, or those of
-  /// `largest_frequency`.
+  /// `stiffest_mode`.
   struct ElasticLaw;
-  struct ScalarLaw;
+  struct LawAtRest;
 
   template <class Cells, class Law>
   void sweep_strip(const Visit& visit, const Columns<D>& x, Law& law) const;
@@ -89,7 +90,7 @@ class TlStressPoints final : public HyperelasticForm<D> {
   Mat<D> mean(Index i, F&& f) const;
   void check_volumes() const;
   void share_out();
-  double largest_frequency();
+  double stiffest_mode(const std::vector<IsotropicStiffness>& laws);
 
   std::vector<double> stiffness_;  // of the first hourglass mode, over sum |b_m|^2 / V, of each material
   CellStrips<D> cells_;
@@ -119,7 +120,8 @@ TlStressPoints<D>::TlStressPoints(const FormulationSetup<D>& setup) : Base(setup
   // Cells end at symmetry planes, and so does the mass that they move.
   for (Index i = 0; i < p_.n; ++i)
     per_mass_.component(0)[i] = 1 / (p_.m.component(0)[i] * p_.modelled_share(i));
-  this->frequency_ = largest_frequency();
+  this->frequency_ = highest_frequency<D>(
+      materials_, [this](const std::vector<IsotropicStiffness>& laws) { return stiffest_mode(laws); });
 }
 
 template <int D>
@@ -159,19 +161,25 @@ struct TlStressPoints<D>::ElasticLaw {
   void stress(const Strip& s, const StressBlock<D>& block) const { of.materials_[s.material]->stress(block); }
 };
 
-/// P = rho c_p^2 F: an elastic body has no mode above that of a scalar medium of its pressure-wave modulus.
 template <int D>
-struct TlStressPoints<D>::ScalarLaw {
-  const TlStressPoints& of;
+struct TlStressPoints<D>::LawAtRest {
+  const std::vector<IsotropicStiffness>& laws;  // one a material
 
   TAUT_INLINE void see(const Strip&, Index, const Pack (&)[D * D]) {}
   void stress(const Strip& s, const StressBlock<D>& block) const {
-    const auto& m = *of.materials_[s.material];
-    const double modulus = m.density() * m.wave_speed() * m.wave_speed();
-    for (std::size_t c = 0; c < D * D; ++c)
-      for (int i = 0; i < block.n; ++i)
-        block.P[c * block.stride + static_cast<std::size_t>(i)] =
-            modulus * block.F[c * block.stride + static_cast<std::size_t>(i)];
+    const IsotropicStiffness& law = laws[s.material];
+    for (int i = 0; i < block.n; i += lanes) {
+      const auto at = [&](int d, int e) { return (d * D + e) * block.stride + static_cast<std::size_t>(i); };
+      Pack H[D][D], trace = pack(0);
+      for (int d = 0; d < D; ++d) {
+        for (int e = 0; e < D; ++e) H[d][e] = load(block.F + at(d, e));
+        trace += H[d][d];
+      }
+      for (int d = 0; d < D; ++d)
+        for (int e = 0; e < D; ++e)
+          store(block.P + at(d, e),
+                law.gradient * H[d][e] + law.transpose * H[e][d] + (d == e ? law.trace * trace : pack(0)));
+    }
   }
 };
 
@@ -340,14 +348,14 @@ Mat<D> TlStressPoints<D>::mean(Index i, F&& f) const {
   return sum / volume;
 }
 
-// Highest frequency [rad/s] of the body at rest, hourglass modes included.
+// Largest eigenvalue of M^-1 K of the body at rest, hourglass modes included.
 template <int D>
-double TlStressPoints<D>::largest_frequency() {
+double TlStressPoints<D>::stiffest_mode(const std::vector<IsotropicStiffness>& laws) {
   share_out();
   const auto apply = [&](const Field& y) {
 #pragma omp parallel for schedule(static, 1) if (parts_.size() > 1)
     for (std::size_t part = 0; part < parts_.size(); ++part) {
-      ScalarLaw law{*this};
+      LawAtRest law{laws};
       sweep_part(parts_[part], y, law);
     }
     for (double& a : p_.a.flat()) a = -a;
@@ -356,7 +364,7 @@ double TlStressPoints<D>::largest_frequency() {
   for (Index i = 0; i < p_.n; ++i) mass.component(0)[i] = 1 / per_mass_.component(0)[i];
   const double eigenvalue = largest_eigenvalue<D>(p_.n, p_.n, mass, p_.a, apply);
   std::fill(p_.a.flat().begin(), p_.a.flat().end(), 0.0);
-  return std::sqrt(eigenvalue);
+  return eigenvalue;
 }
 
 }  // namespace

@@ -174,14 +174,12 @@ TEST_CASE_TEMPLATE("zero-energy control: the energy of a free vibration stays ov
 
 TEST_CASE_TEMPLATE("zero-energy control: the stable step knows of it", Dimension, Dim<1>, Dim<2>, Dim<3>) {
   constexpr int D = Dimension::value;
-  // Where nu is 0.3 the step of the body without control is up to 10 % too long on jittered clouds in 3D.
-  const auto cork = make_material<D>("neo_hookean", {.E = E, .nu = 0, .density = 1000});
   const auto cloud = brick<D>(D == 1 ? 40 : D == 2 ? 8 : 5, 0.15);
   for (const auto& [operators, support] : linear_operators)
     for (const double control : {1.0, 100.0}) {
       CAPTURE(operators);
       CAPTURE(control);
-      check_stable_step(cloud, cork,
+      check_stable_step(cloud, rubber<D>(),
                         {.operators = operators, .support_dx = support, .zero_energy_control = control});
     }
 }
