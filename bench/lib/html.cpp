@@ -27,6 +27,7 @@ td.wrap { white-space: normal; min-width: 7.5rem; }
 td.wide { white-space: normal; min-width: 22rem; }
 figure { margin: 1rem 0 1.6rem; } figure img { max-width: 100%; height: auto; display: block; } figcaption { max-width: 90ch; margin-top: .3rem; }
 .swatch { display: inline-block; width: .8em; height: .8em; border-radius: 2px; margin-right: .45em; vertical-align: -.05em; }
+code { font: .92em ui-monospace, "DejaVu Sans Mono", monospace; }
 pre { background: #f4f6f8; padding: .6rem .8rem; overflow-x: auto; font-size: .85rem; }
 summary { cursor: pointer; color: #0b5cad; margin: .6rem 0; }
 )";
@@ -64,6 +65,24 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
+namespace {
+
+/// Names in backticks, as scenes and rules write them, in a fixed-width face.
+std::string with_code(const std::string& text) {
+  std::string out;
+  std::size_t done = 0;
+  for (;;) {
+    const std::size_t open = text.find('`', done),
+                      close = open == text.npos ? open : text.find('`', open + 1);
+    if (close == text.npos) return out + escaped(text.substr(done));
+    out += escaped(text.substr(done, open - done)) + "<code>" +
+           escaped(text.substr(open + 1, close - open - 1)) + "</code>";
+    done = close + 1;
+  }
+}
+
+}  // namespace
+
 HtmlPage::HtmlPage(const std::string& title) : title_(title) { heading(1, title); }
 
 void HtmlPage::heading(int level, const std::string& text) {
@@ -71,8 +90,8 @@ void HtmlPage::heading(int level, const std::string& text) {
 }
 
 void HtmlPage::paragraph(const std::string& text, const std::string& kind) {
-  body_ += kind.empty() ? fmt::format("<p>{}</p>\n", escaped(text))
-                        : fmt::format("<p class=\"{}\">{}</p>\n", kind, escaped(text));
+  body_ += kind.empty() ? fmt::format("<p>{}</p>\n", with_code(text))
+                        : fmt::format("<p class=\"{}\">{}</p>\n", kind, with_code(text));
 }
 
 void HtmlPage::code(const std::string& text) { body_ += "<pre>" + escaped(text) + "</pre>\n"; }
@@ -93,7 +112,7 @@ void HtmlPage::table(const std::vector<std::string>& header, const std::vector<s
                              escaped(cell.text));
       else
         body_ += fmt::format("<td{}>{}</td>", cell.kind.empty() ? "" : " class=\"" + cell.kind + '"',
-                             escaped(cell.text));
+                             with_code(cell.text));
     }
     body_ += "</tr>\n";
   }
@@ -104,7 +123,7 @@ void HtmlPage::figure(const std::filesystem::path& image, const std::string& cap
   const std::string type = image.extension() == ".svg" ? "svg+xml" : "png";
   body_ += fmt::format(
       "<figure><img alt=\"{}\" src=\"data:image/{};base64,{}\"><figcaption>{}</figcaption></figure>\n",
-      escaped(caption), type, base64(read_file(image)), escaped(caption));
+      escaped(caption), type, base64(read_file(image)), with_code(caption));
 }
 
 void HtmlPage::begin_details(const std::string& summary) {
