@@ -10,7 +10,7 @@
 #include "parallel.hpp"
 #include "sort_by_key.hpp"
 
-namespace taut::detail {
+namespace taut::detail::inline TAUT_SIMD_NAMESPACE {
 namespace {
 
 // Monotone in x, so that points within reach of a box lie in the cells between those of its corners.
@@ -241,4 +241,4 @@ template class CellGrid<1>;
 template class CellGrid<2>;
 template class CellGrid<3>;
 
-}  // namespace taut::detail
+}  // namespace taut::detail::inline TAUT_SIMD_NAMESPACE

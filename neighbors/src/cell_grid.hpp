@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "clusters.hpp"
+#include "simd.hpp"
 
-namespace taut::detail {
+namespace taut::detail::inline TAUT_SIMD_NAMESPACE {
 
 // A grid of cells as wide as the largest radius; a cluster belongs to the cell of its low corner, and rows of
 // cells along x are contiguous in memory. Where the clusters fill their bounding box, cells are numbered
@@ -59,4 +60,4 @@ class CellGrid {
   AlignedArray<std::uint32_t> start_;
 };
 
-}  // namespace taut::detail
+}  // namespace taut::detail::inline TAUT_SIMD_NAMESPACE

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <map>
 
-namespace taut::detail {
+namespace taut::detail::inline TAUT_SIMD_NAMESPACE {
 namespace {
 
 // Clusters by half-octaves of their radii. Cells are as wide as the largest radius: whole octaves search a
@@ -64,4 +64,4 @@ template class CellSearch<1>;
 template class CellSearch<2>;
 template class CellSearch<3>;
 
-}  // namespace taut::detail
+}  // namespace taut::detail::inline TAUT_SIMD_NAMESPACE

@@ -7,7 +7,7 @@
 #include "slice_group.hpp"
 #include "slice_set.hpp"
 
-namespace taut::detail {
+namespace taut::detail::inline TAUT_SIMD_NAMESPACE {
 
 template <int D>
 class CellSearch {
@@ -28,4 +28,4 @@ class CellSearch {
   std::vector<CellGrid<D>> grids_;  // one a half-octave of radii, so that cells suit them
 };
 
-}  // namespace taut::detail
+}  // namespace taut::detail::inline TAUT_SIMD_NAMESPACE

@@ -4,7 +4,7 @@
 #include <map>
 #include <nanoflann.hpp>
 
-namespace taut::detail {
+namespace taut::detail::inline TAUT_SIMD_NAMESPACE {
 namespace {
 
 // Particles whose radii are alike are searched together. Without members all particles belong.
@@ -105,4 +105,4 @@ template class KdTree<1>;
 template class KdTree<2>;
 template class KdTree<3>;
 
-}  // namespace taut::detail
+}  // namespace taut::detail::inline TAUT_SIMD_NAMESPACE

@@ -7,7 +7,7 @@
 #include "slice_group.hpp"
 #include "slice_set.hpp"
 
-namespace taut::detail {
+namespace taut::detail::inline TAUT_SIMD_NAMESPACE {
 
 template <int D>
 class KdTree {
@@ -31,4 +31,4 @@ class KdTree {
   std::vector<std::unique_ptr<Tree>> trees_;  // one an octave of radii
 };
 
-}  // namespace taut::detail
+}  // namespace taut::detail::inline TAUT_SIMD_NAMESPACE

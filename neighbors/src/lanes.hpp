@@ -12,11 +12,13 @@
 #include <immintrin.h>
 #endif
 
-namespace taut::detail {
+#include "simd.hpp"
 
-#if defined(__AVX512F__)
+namespace taut::detail::inline TAUT_SIMD_NAMESPACE {
+
+#if TAUT_SIMD >= 2
 inline constexpr int width = 8;
-#elif defined(__AVX__)
+#elif TAUT_SIMD >= 1
 inline constexpr int width = 4;
 #else
 inline constexpr int width = 2;
@@ -42,9 +44,9 @@ inline Register load_part(const void* p) {
 }
 inline Double8 load8(const double* p) { TAUT_LANES(load_part<Part>(p + i * width)); }
 inline Double8 splat8(double v) {
-#if defined(__AVX512F__)
+#if TAUT_SIMD >= 2
   return {{Part{v, v, v, v, v, v, v, v}}};
-#elif defined(__AVX__)
+#elif TAUT_SIMD >= 1
   return {{Part{v, v, v, v}, Part{v, v, v, v}}};
 #else
   return {{Part{v, v}, Part{v, v}, Part{v, v}, Part{v, v}}};
@@ -63,12 +65,12 @@ inline Double8 min(const Double8& a, const Double8& b) {
 
 // Bit l is set where a < b in lane l; false where either is NaN.
 inline unsigned less(const Double8& a, const Double8& b) {
-#if defined(__AVX512F__)
+#if TAUT_SIMD >= 2
   return _mm512_cmp_pd_mask(a.part[0], b.part[0], _CMP_LT_OQ);
 #else
   unsigned m = 0;
   for (int i = 0; i < lanes / width; ++i) {
-#if defined(__AVX__)
+#if TAUT_SIMD >= 1
     const int bits = _mm256_movemask_pd(_mm256_cmp_pd(a.part[i], b.part[i], _CMP_LT_OQ));
 #elif defined(__SSE2__)
     const int bits = _mm_movemask_pd(_mm_cmplt_pd(a.part[i], b.part[i]));
@@ -113,7 +115,7 @@ inline Float16 load16(const float* p) {
 }
 // The register that begins with number `first` of sixteen, eight of which are at p and eight at q.
 inline FloatRegister load_of_two([[maybe_unused]] int first, const float* p, const float* q) {
-#if defined(__AVX512F__)
+#if TAUT_SIMD >= 2
   const __m512d low = _mm512_castpd256_pd512(load_part<__m256d>(p));
   return {{reinterpret_cast<FloatPart>(_mm512_insertf64x4(low, load_part<__m256d>(q), 1))}};
 #else
@@ -143,7 +145,7 @@ inline Floats<n> min(const Floats<n>& a, const Floats<n>& b) {
 // a b + c, rounded once or twice.
 template <int n>
 inline Floats<n> multiply_add(const Floats<n>& a, const Floats<n>& b, const Floats<n>& c) {
-#if defined(__AVX512F__)
+#if TAUT_SIMD >= 2
   return {{reinterpret_cast<FloatPart>(_mm512_fmadd_ps(reinterpret_cast<__m512>(a.part[0]),
                                                        reinterpret_cast<__m512>(b.part[0]),
                                                        reinterpret_cast<__m512>(c.part[0])))}};
@@ -153,7 +155,7 @@ inline Floats<n> multiply_add(const Floats<n>& a, const Floats<n>& b, const Floa
 }
 // The smaller of |a| and |b|, where a is not negative; NaN of b left out.
 inline FloatRegister least_magnitude(const FloatRegister& a, const FloatRegister& b) {
-#if defined(__AVX512DQ__)
+#if TAUT_SIMD >= 2
   constexpr int least = 2, sign_cleared = 2 << 2;
   return {{reinterpret_cast<FloatPart>(_mm512_range_ps(
       reinterpret_cast<__m512>(a.part[0]), reinterpret_cast<__m512>(b.part[0]), least | sign_cleared))}};
@@ -169,13 +171,13 @@ inline FloatRegister least_magnitude(const FloatRegister& a, const FloatRegister
 // Bit i is set where a < b in element i; false where either is NaN.
 template <int n>
 inline unsigned less(const Floats<n>& a, const Floats<n>& b) {
-#if defined(__AVX512F__)
+#if TAUT_SIMD >= 2
   return _mm512_cmp_ps_mask(reinterpret_cast<__m512>(a.part[0]), reinterpret_cast<__m512>(b.part[0]),
                             _CMP_LT_OQ);
 #else
   unsigned m = 0;
   for (int i = 0; i < n; ++i) {
-#if defined(__AVX__)
+#if TAUT_SIMD >= 1
     const int bits = _mm256_movemask_ps(
         _mm256_cmp_ps(reinterpret_cast<__m256>(a.part[i]), reinterpret_cast<__m256>(b.part[i]), _CMP_LT_OQ));
 #elif defined(__SSE2__)
@@ -200,10 +202,10 @@ inline void store_floats(const Double8& a, float* to) {
 }
 
 // As many bytes as a cache line or half of one has.
-#if defined(__AVX512BW__)
+#if TAUT_SIMD >= 2
 typedef std::uint8_t BytePart __attribute__((vector_size(64)));
 inline constexpr int bytes = 64;
-#elif defined(__AVX2__)
+#elif TAUT_SIMD >= 1
 typedef std::uint8_t BytePart __attribute__((vector_size(32)));
 inline constexpr int bytes = 32;
 #else
@@ -240,14 +242,14 @@ inline Bytes shift_right(const Bytes& a, int keep) {
 
 // Bit i is set where byte i is not zero.
 inline std::uint64_t nonzero(const Bytes& a) {
-#if defined(__AVX512BW__)
+#if TAUT_SIMD >= 2
   const auto all = reinterpret_cast<__m512i>(a.part[0]);
   return _mm512_test_epi8_mask(all, all);
 #else
   std::uint64_t m = 0;
   for (unsigned i = 0; i < std::size(a.part); ++i) {
     const auto some = reinterpret_cast<BytePart>(a.part[i] != 0);
-#if defined(__AVX2__)
+#if TAUT_SIMD >= 1
     const auto bits = static_cast<std::uint32_t>(_mm256_movemask_epi8(reinterpret_cast<__m256i>(some)));
 #elif defined(__SSE2__)
     const auto bits = static_cast<std::uint32_t>(_mm_movemask_epi8(reinterpret_cast<__m128i>(some)));
@@ -263,7 +265,7 @@ inline std::uint64_t nonzero(const Bytes& a) {
 // Bytes that have at least `count` bits set; others become zero.
 template <int count>
 inline Bytes with_bits(const Bytes& a) {
-#if defined(__AVX512BITALG__)
+#if TAUT_SIMD >= 3
   const auto all = reinterpret_cast<__m512i>(a.part[0]);
   const __mmask64 enough = _mm512_cmpge_epu8_mask(_mm512_popcnt_epi8(all), _mm512_set1_epi8(count));
   return {{reinterpret_cast<BytePart>(_mm512_maskz_mov_epi8(enough, all))}};
@@ -311,7 +313,7 @@ inline Index* store_places(Index base, unsigned mask, Index* to) {
 // Stores those of the eight numbers at `from` that the mask picks; what follows them, up to eight numbers, is
 // overwritten too. Returns the end of those picked.
 inline Index* store_picked(const Index* from, unsigned mask, Index* to) {
-#if defined(__AVX512F__) && defined(__AVX512VL__)
+#if TAUT_SIMD >= 2
   const __m256i all = load_part<__m256i>(from);
   _mm256_storeu_si256(reinterpret_cast<__m256i*>(to),
                       _mm256_maskz_compress_epi32(static_cast<__mmask8>(mask), all));
@@ -326,7 +328,7 @@ inline Index* store_picked(const Index* from, unsigned mask, Index* to) {
 // picks to `mask`, and their particles to `particle`. What follows, up to a pack of each, is overwritten too.
 inline void append_picked(const Bytes& all, std::uint64_t which, const Index* slices, std::uint8_t*& mask,
                           Index*& particle) {
-#if defined(__AVX512VBMI2__)
+#if TAUT_SIMD >= 3
   static constexpr std::array<std::uint8_t, bytes> places = [] {
     std::array<std::uint8_t, bytes> p{};
     for (unsigned i = 0; i < bytes; ++i) p[i] = static_cast<std::uint8_t>(i);
@@ -357,7 +359,7 @@ inline void append_picked(const Bytes& all, std::uint64_t which, const Index* sl
   for (int w = 0; w < bytes / lanes; ++w) {
     const auto m = static_cast<unsigned>(which >> (w * lanes) & 0xff);
     particle = store_places(slices[w] * lanes, m, particle);
-#if defined(__BMI2__)
+#if TAUT_SIMD >= 1
     const std::uint64_t picked = _pext_u64(word[w], mask_tables.spread[m]);
     std::memcpy(mask, &picked, sizeof picked);
 #else
@@ -377,7 +379,7 @@ inline void deal(const Index* numbers, const std::uint8_t* masks, std::size_t n,
                  std::size_t stride, std::size_t (&count)[lanes]) {
   Index* end[lanes];
   for (int l = 0; l < lanes; ++l) end[l] = out + static_cast<std::size_t>(l) * stride;
-#if defined(__AVX512F__)
+#if TAUT_SIMD >= 2
   for (std::size_t i = 0; i < n; i += 16) {
     const __m512i m = _mm512_cvtepu8_epi32(load_part<__m128i>(masks + i)),
                   all = load_part<__m512i>(numbers + i);
@@ -402,7 +404,7 @@ inline void deal(const Index* numbers, const std::uint8_t* masks, std::size_t n,
 template <class T>
 inline void transpose8(const T* rows, std::size_t stride, T* columns, std::size_t column_stride) {
   static_assert(sizeof(T) == 4);
-#if defined(__AVX2__)
+#if TAUT_SIMD >= 1
   __m256 r[lanes], t[lanes];
   for (std::size_t i = 0; i < lanes; ++i) r[i] = load_part<__m256>(rows + i * stride);
   for (int i = 0; i < lanes; i += 2) {
@@ -426,4 +428,4 @@ inline void transpose8(const T* rows, std::size_t stride, T* columns, std::size_
 #endif
 }
 
-}  // namespace taut::detail
+}  // namespace taut::detail::inline TAUT_SIMD_NAMESPACE

@@ -5,7 +5,7 @@
 
 #include "lanes.hpp"
 
-namespace taut::detail {
+namespace taut::detail::inline TAUT_SIMD_NAMESPACE {
 namespace {
 
 // Coordinates of the group are at most `extent` radii from the middle, those of candidates a radius more. So
@@ -101,4 +101,4 @@ template struct Neighbourhood<1>;
 template struct Neighbourhood<2>;
 template struct Neighbourhood<3>;
 
-}  // namespace taut::detail
+}  // namespace taut::detail::inline TAUT_SIMD_NAMESPACE

@@ -4,9 +4,10 @@
 #include <taut/core/fields.hpp>
 #include <vector>
 
+#include "simd.hpp"
 #include "slice_group.hpp"
 
-namespace taut::detail {
+namespace taut::detail::inline TAUT_SIMD_NAMESPACE {
 
 // Slices near a group, ascending, with their boxes and particles in single precision: relative to the middle
 // of the group and in units of the largest radius. Arrays end with a slice whose particles are infinitely far
@@ -35,4 +36,4 @@ struct Neighbourhood {
   AlignedArray<float> rows_;
 };
 
-}  // namespace taut::detail
+}  // namespace taut::detail::inline TAUT_SIMD_NAMESPACE

@@ -2,9 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <limits>
 #include <taut/core/error.hpp>
 
-#include "lanes.hpp"
 #include "parallel.hpp"
 
 namespace taut {
@@ -38,8 +39,8 @@ void PairListBuilder::check_slots(double slots, double particles) {
   if (slots <= most) return;
   throw InputError(fmt::format(
       "the pair list of {:.0f} particles would need at least {:.3g} slots of eight pairs, and a 32-bit index "
-      "counts "
-      "{:.0f}: use a smaller radius (this one gives each at least {:.3g} neighbours) or fewer particles",
+      "counts {:.0f}: use a smaller radius (this one gives each at least {:.3g} neighbours) or fewer "
+      "particles",
       particles, slots, most, slots * lanes / particles));
 }
 

@@ -3,7 +3,7 @@
 #include <taut/neighbors/pair_list.hpp>
 #include <vector>
 
-#include "slice_encoder.hpp"
+#include "encoded_slices.hpp"
 
 namespace taut {
 

@@ -7,7 +7,7 @@
 
 #include "lanes.hpp"
 
-namespace taut::detail {
+namespace taut::detail::inline TAUT_SIMD_NAMESPACE {
 namespace {
 
 // Eight numbers from place 8 - l on are infinite in lane l, those from place 0 on nowhere: added to distances
@@ -217,4 +217,4 @@ template class PairTest<1>;
 template class PairTest<2>;
 template class PairTest<3>;
 
-}  // namespace taut::detail
+}  // namespace taut::detail::inline TAUT_SIMD_NAMESPACE

@@ -5,7 +5,7 @@
 
 #include "neighbourhood.hpp"
 
-namespace taut::detail {
+namespace taut::detail::inline TAUT_SIMD_NAMESPACE {
 
 // Tests in single precision, and in double where that cannot tell: the pairs are those of the definition, to
 // the last bit.
@@ -39,4 +39,4 @@ class PairTest {
   std::vector<std::size_t> doubtful_;                    // those whose pairs are too near to a radius
 };
 
-}  // namespace taut::detail
+}  // namespace taut::detail::inline TAUT_SIMD_NAMESPACE

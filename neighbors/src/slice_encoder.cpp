@@ -6,7 +6,7 @@
 
 #include "lanes.hpp"
 
-namespace taut::detail {
+namespace taut::detail::inline TAUT_SIMD_NAMESPACE {
 namespace {
 
 // From how many lanes on a contiguous slot is better than gathering its pairs. A step is about equally fast
@@ -149,4 +149,4 @@ Index SliceEncoder::gather(Index own, std::size_t loose, EncodedSlices& out) {
   return static_cast<Index>(slots);
 }
 
-}  // namespace taut::detail
+}  // namespace taut::detail::inline TAUT_SIMD_NAMESPACE

@@ -12,7 +12,7 @@
 
 #include "lanes.hpp"
 
-namespace taut::detail {
+namespace taut::detail::inline TAUT_SIMD_NAMESPACE {
 
 // A bit for each slice and a flag for each 64 of them that tells which words may differ from zero: reading
 // back sorts at a cost that follows the members, not the range.
@@ -61,4 +61,4 @@ class SliceSet {
   std::size_t lowest_ = none, highest_ = 0;  // groups in use
 };
 
-}  // namespace taut::detail
+}  // namespace taut::detail::inline TAUT_SIMD_NAMESPACE

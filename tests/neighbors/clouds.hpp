@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <search_variants.hpp>
 #include <set>
 #include <span>
 #include <string>
@@ -174,7 +175,7 @@ inline void check_invariants(const taut::PairList& list) {
   need(bits == list.pairs());
 }
 
-// Both searches against the definition.
+// Both searches against the definition, that by cells with all registers that this processor has.
 template <int D>
 void check_against_brute_force(const Points<D>& p, const std::vector<double>& radii, bool single = false) {
   const Pairs expected = brute_force(p, radii);
@@ -187,6 +188,12 @@ void check_against_brute_force(const Points<D>& p, const std::vector<double>& ra
   CHECK(cells.pairs() == static_cast<std::int64_t>(expected.size()));
   CHECK(pairs_of(cells) == expected);
   CHECK(same_layout(cells, tree));
+  for (const auto& variant : taut::detail::search_variants<D>()) {
+    CAPTURE(variant.simd);
+    const taut::detail::Radii given =
+        single ? taut::detail::Radii{radii.at(0), {}} : taut::detail::Radii{0, radii};
+    CHECK(same_layout(cells, variant.search(p.view(), given)));
+  }
   for (const auto& [a, b] : expected) {
     if (!std::binary_search(expected.begin(), expected.end(), std::pair(b, a)))
       FAIL("not symmetric: ", a, " ", b);
