@@ -46,25 +46,30 @@ template <int D>
 CellGrid<D>::CellGrid(const Clusters<D>& clusters, std::span<const Index> members, bool graded)
     : n_(members.empty() ? clusters.slices() : static_cast<Index>(members.size())), graded_(graded) {
   if (n_ == 0) return;
-  const auto cluster = [&](Index i) {
+  const auto cluster = [&](Index i) -> const Cluster<D>& {
     return clusters[members.empty() ? i : members[static_cast<std::size_t>(i)]];
   };
 
-  double first[D], last[D];
-  const Cluster<D> any = cluster(0);
+  double radius = 0, first[D], last[D], longest[D] = {};
+  const Cluster<D>& any = cluster(0);
   for (int d = 0; d < D; ++d) first[d] = last[d] = any.box.low[d];
+#pragma omp parallel for schedule(static) reduction(max                      \
+                                                    : radius, last, longest) \
+    reduction(min                                                            \
+              : first) if (worth_threads(n_))
   for (Index i = 0; i < n_; ++i) {
-    const Cluster<D> c = cluster(i);
-    radius_ = std::max(radius_, c.radius);
+    const Cluster<D>& c = cluster(i);
+    radius = std::max(radius, c.radius);
     for (int d = 0; d < D; ++d) {
       first[d] = std::min(first[d], c.box.low[d]);
       last[d] = std::max(last[d], c.box.low[d]);
-      longest_[d] = std::max(longest_[d], c.box.high[d] - c.box.low[d]);
+      longest[d] = std::max(longest[d], c.box.high[d] - c.box.low[d]);
     }
   }
+  radius_ = radius;
   double cells = 1;
   for (int d = 0; d < D; ++d) {
-    longest_[d] = std::nextafter(longest_[d], std::numeric_limits<double>::infinity());  // it was rounded
+    longest_[d] = std::nextafter(longest[d], std::numeric_limits<double>::infinity());  // it was rounded
     low_[d] = cell_of(first[d], radius_);
     high_[d] = cell_of(last[d], radius_);
     corner_[d] = first[d];
@@ -77,7 +82,7 @@ CellGrid<D>::CellGrid(const Clusters<D>& clusters, std::span<const Index> member
   auto keys = std::make_unique_for_overwrite<std::uint32_t[]>(static_cast<std::size_t>(n_));
 #pragma omp parallel for schedule(static) if (worth_threads(n_))
   for (Index i = 0; i < n_; ++i) {
-    const Cluster<D> c = cluster(i);
+    const Cluster<D>& c = cluster(i);
     double cell[3] = {};
     for (int d = 0; d < D; ++d) cell[d] = cell_of(c.box.low[d], radius_);
     const std::uint64_t x = dense_ ? static_cast<std::uint64_t>(cell[0] - low_[0]) : as_bits(cell[0]);
@@ -94,25 +99,26 @@ CellGrid<D>::CellGrid(const Clusters<D>& clusters, std::span<const Index> member
   }
   if (graded_) r2_ = AlignedArray<float>::for_overwrite(size);
   slice_ = AlignedArray<Index>::for_overwrite(size);
-  inside_.resize(size);
+  auto inside = std::make_unique_for_overwrite<std::uint8_t[]>(static_cast<std::size_t>(n_));
   start_ = AlignedArray<std::uint32_t>::for_overwrite(buckets_ + 1);
 #pragma omp parallel for schedule(static) if (worth_threads(n_))
   for (Index i = 0; i < n_; ++i) {
-    const Cluster<D> c = cluster(order[i]);
-    bool inside = true;
+    const Cluster<D>& c = cluster(order[i]);
+    bool in_cell = true;
     for (int d = 0; d < D; ++d) {
       lows_[d][i] = lower_bound((c.box.low[d] - corner_[d]) / radius_);
       highs_[d][i] = upper_bound((c.box.high[d] - corner_[d]) / radius_);
-      inside = inside && cell_of(c.box.low[d], radius_) == cell_of(c.box.high[d], radius_);
+      in_cell = in_cell && cell_of(c.box.low[d], radius_) == cell_of(c.box.high[d], radius_);
     }
     if (graded_) r2_[i] = upper_bound(c.radius / radius_ * (c.radius / radius_) * rounding);
     slice_[i] = c.slice;
-    inside_[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(inside ? c.count : 0);
+    inside[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(in_cell ? c.count : 0);
     for (std::uint64_t k = i == 0 ? 0 : keys[i - 1] + std::uint64_t{1}; k <= keys[i]; ++k)
       start_[k] = static_cast<std::uint32_t>(i);
   }
   for (std::uint64_t k = keys[n_ - 1] + std::uint64_t{1}; k <= buckets_; ++k)
     start_[k] = static_cast<std::uint32_t>(n_);
+  if (dense_) least_pairs_ = count_least_pairs(inside.get());
 }
 
 // Bucket of the cell of a row whose x is zero (hashed) or the lowest (dense).
@@ -222,16 +228,17 @@ std::size_t CellGrid<D>::filter(const Box<D>& box, double reach, Workspace& work
   return static_cast<std::size_t>(out - work.slices.data());
 }
 
+// By the pigeonhole principle: particles in one part of 1/2^D of a cell are less than a radius apart, as its
+// sides are half a radius long. `inside`: the number of particles of clusters that lie wholly in their cell.
 template <int D>
-double CellGrid<D>::least_pairs() const {
-  if (!dense_ || n_ == 0) return 0;
-  // Particles in one part of 1/2^D of a cell are less than a radius apart: its sides are half a radius long.
+double CellGrid<D>::count_least_pairs(const std::uint8_t* inside) const {
   constexpr double parts = 1 << D;
   double pairs = 0;
+#pragma omp parallel for schedule(static) reduction(+ : pairs) if (worth_threads(n_))
   for (std::uint64_t k = 0; k < buckets_; ++k) {
     if ((start_[k + 1] - start_[k]) * lanes <= parts) continue;
-    double count = 0;  // of particles in clusters that lie wholly in the cell
-    for (std::uint32_t j = start_[k]; j < start_[k + 1]; ++j) count += inside_[j];
+    double count = 0;
+    for (std::uint32_t j = start_[k]; j < start_[k + 1]; ++j) count += inside[j];
     if (count > parts) pairs += count * (count / parts - 1);
   }
   return pairs;

@@ -34,18 +34,19 @@ class CellGrid {
   // in work.slices; returns their number. A slice may come repeatedly.
   std::size_t find(const Box<D>& box, double reach, Workspace& work) const;
   double radius() const { return radius_; }
-  // A count of pairs that the clusters' particles surely have, by the pigeonhole principle: no search needed.
-  double least_pairs() const;
+  // A count of pairs that the clusters' particles surely have, known without a search.
+  double least_pairs() const { return least_pairs_; }
 
  private:
   std::uint64_t row(double y, double z) const;
+  double count_least_pairs(const std::uint8_t* inside) const;
   void find_runs(const Box<D>& box, double reach, std::vector<Run>& runs) const;
   template <bool graded>
   std::size_t filter(const Box<D>& box, double reach, Workspace& work) const;
 
   Index n_ = 0;
   bool graded_ = false, dense_ = false;
-  double radius_ = 0;
+  double radius_ = 0, least_pairs_ = 0;
   double longest_[D] = {};   // no cluster is longer
   double low_[D], high_[D];  // cells in use
   double extent_[D];         // number of cells
@@ -56,7 +57,6 @@ class CellGrid {
   AlignedArray<float> lows_[D], highs_[D];
   AlignedArray<float> r2_;
   AlignedArray<Index> slice_;
-  std::vector<std::uint8_t> inside_;  // particles of clusters that lie wholly in their cell
   AlignedArray<std::uint32_t> start_;
 };
 

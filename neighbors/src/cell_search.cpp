@@ -15,7 +15,7 @@ std::map<int, std::vector<Index>> levels_of(const Clusters<D>& clusters) {
   int last = 0;
   for (Index c = 0; c < clusters.end(); ++c) {
     if (!clusters.exists(c)) continue;
-    const double r = clusters.radius(c);
+    const double r = clusters[c].radius;
     const int half_octave = std::ilogb(r * r);
     if (!level || half_octave != last) level = &levels[last = half_octave];
     level->push_back(c);

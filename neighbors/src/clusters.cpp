@@ -53,32 +53,29 @@ void split(const Slice<D>& slice, int begin, int end, Put&& put) {
 }  // namespace
 
 template <int D>
-Clusters<D>::Clusters(const PointView<D>& points, const Radii& radii) : particles_(points.n) {
-  const auto slices = static_cast<Index>(padded(static_cast<std::size_t>(points.n)) / lanes);
-  boxes_ = AlignedArray<SliceBox>::for_overwrite(static_cast<std::size_t>(slices));
-  part_begin_.resize(static_cast<std::size_t>(slices) + 1);
+Clusters<D>::Clusters(const PointView<D>& points, const Radii& radii)
+    : slices_(static_cast<Index>(padded(static_cast<std::size_t>(points.n)) / lanes)) {
+  whole_ = AlignedArray<Cluster<D>>::for_overwrite(static_cast<std::size_t>(slices_));
+  part_begin_.resize(static_cast<std::size_t>(slices_) + 1);
 #pragma omp parallel for schedule(static) if (worth_threads(points.n))
-  for (Index s = 0; s < slices; ++s) {
+  for (Index s = 0; s < slices_; ++s) {
     const Slice<D> slice = make_slice(points, radii, s);
-    SliceBox box{{}, 0, {}, 0};
     Index parts = 0;
     split(slice, 0, slice.count, [&](const Cluster<D>& c) {
-      for (int d = 0; d < D; ++d) {
-        box.low[d] = parts ? std::min(box.low[d], c.box.low[d]) : c.box.low[d];
-        box.high[d] = parts ? std::max(box.high[d], c.box.high[d]) : c.box.high[d];
-      }
-      box.radius = std::max(box.radius, c.radius);
+      whole_[static_cast<std::size_t>(s)] = c;
       ++parts;
     });
-    boxes_[static_cast<std::size_t>(s)] = box;
     part_begin_[static_cast<std::size_t>(s)] = parts > 1 ? parts : 0;
   }
   Index total = 0;
   for (Index& b : part_begin_) total += std::exchange(b, total);
+  if (total == 0) {
+    part_begin_ = {};
+    return;
+  }
   parts_.resize(static_cast<std::size_t>(total));
-  if (total == 0) return;
 #pragma omp parallel for schedule(static) if (worth_threads(points.n))
-  for (Index s = 0; s < slices; ++s) {
+  for (Index s = 0; s < slices_; ++s) {
     if (whole(s)) continue;
     const Slice<D> slice = make_slice(points, radii, s);
     Cluster<D>* out = parts_.data() + part_begin_[static_cast<std::size_t>(s)];

@@ -428,4 +428,20 @@ inline void transpose8(const T* rows, std::size_t stride, T* columns, std::size_
 #endif
 }
 
+// The least and the largest of each of eight rows of eight floats; NaN counts where a row begins with it
+// only.
+inline void bound_rows(const float* rows, float* least, float* largest) {
+  typedef float Column __attribute__((vector_size(lanes * sizeof(float))));
+  float columns[lanes * lanes];
+  transpose8(rows, lanes, columns, lanes);
+  Column low = load_part<Column>(columns), high = low;
+  for (int i = 1; i < lanes; ++i) {
+    const Column next = load_part<Column>(columns + i * lanes);
+    low = next < low ? next : low;
+    high = next > high ? next : high;
+  }
+  std::memcpy(least, &low, sizeof low);
+  std::memcpy(largest, &high, sizeof high);
+}
+
 }  // namespace taut::detail::inline TAUT_SIMD_NAMESPACE

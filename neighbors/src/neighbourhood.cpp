@@ -1,6 +1,7 @@
 #include "neighbourhood.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 
 #include "lanes.hpp"
@@ -13,11 +14,16 @@ namespace {
 // rounding: less than half of what is allowed.
 float tolerance_of(double extent) { return static_cast<float>(1e-6 * (extent + 3)); }
 
+double largest(const Double8& a) {
+  double all[lanes];
+  std::memcpy(all, &a, sizeof all);
+  return *std::max_element(all, all + lanes);
+}
+
 }  // namespace
 
 template <int D>
-void Neighbourhood<D>::gather(const PointView<D>& points, const Radii& radii, const Clusters<D>& clusters,
-                              const SliceGroup<D>& group) {
+void Neighbourhood<D>::gather(const PointView<D>& points, const Radii& radii, const SliceGroup<D>& group) {
   compact = group.compact;
   own = static_cast<Index>(std::lower_bound(slices.begin(), slices.end(), group.begin) - slices.begin());
   if (!compact) return;
@@ -30,70 +36,65 @@ void Neighbourhood<D>::gather(const PointView<D>& points, const Radii& radii, co
       x[d] = AlignedArray<float>(2 * filled * lanes);
     }
     reach2 = AlignedArray<float>(2 * filled);
-    rows_ = AlignedArray<float>(2 * filled * lanes);
     if (radii.graded()) r2 = AlignedArray<float>(2 * filled * lanes);
   }
 
+  // The last slice of all may be short: it is copied from here.
+  const bool is_short = (slices.back() + 1) * lanes > points.n;
+  const std::size_t long_slices = n - is_short;
+  double rest[lanes];
+  const auto load_short = [&](const double* numbers, double none) {
+    const Index first = slices.back() * lanes;
+    for (int l = 0; l < lanes; ++l) rest[l] = first + l < points.n ? numbers[first + l] : none;
+    return load8(rest);
+  };
+
   double reach = group.reach;
-  if (radii.graded())
-    for (const Index s : slices) reach = std::max(reach, clusters.box(s).radius);
-  scale = 1 / reach;
-  double extent = 0;
-  for (int d = 0; d < D; ++d) {
-    origin[d] = group.box.low[d] + (group.box.high[d] - group.box.low[d]) / 2;
-    extent = std::max(extent, (group.box.high[d] - group.box.low[d]) * scale / 2);
+  if (radii.graded()) {
+    const double* const r = radii.each.data();
+    Double8 all = is_short ? load_short(r, 0) : splat8(0);
+    for (std::size_t i = 0; i < long_slices; ++i) all = max(all, load8(r + slices[i] * lanes));
+    reach = std::max(reach, largest(all));
   }
+  const double scale = 1 / reach;
+  const Double8 scales = splat8(scale);
+  double extent = 0;
+  for (int d = 0; d < D; ++d) extent = std::max(extent, (group.box.high[d] - group.box.low[d]) * scale / 2);
   tolerance = tolerance_of(extent);
 
-  // Rows of SliceBox: low corner, radius, high corner.
-  double middle[lanes] = {};
-  for (int d = 0; d < D; ++d) middle[d] = middle[4 + d] = origin[d];
-  const Double8 middles = load8(middle), scales = splat8(scale);
-  for (std::size_t i = 0; i < n; ++i) {
-    if (i + lanes < n) __builtin_prefetch(clusters.box(slices[i + lanes]).low);
-    for (int d = 0; d < D; ++d) __builtin_prefetch(points.x[d] + slices[i] * lanes);
-    store_floats((load8(clusters.box(slices[i]).low) - middles) * scales, rows_.data() + i * lanes);
-  }
-  float columns[lanes * lanes];
-  for (std::size_t i = 0; i < n; i += lanes) {
-    transpose8(rows_.data() + i * lanes, lanes, columns, lanes);
-    for (int d = 0; d < D; ++d) {
-      std::memcpy(low[d].data() + i, columns + d * lanes, lanes * sizeof(float));
-      std::memcpy(high[d].data() + i, columns + (4 + d) * lanes, lanes * sizeof(float));
-    }
-    for (std::size_t l = 0; l < lanes; ++l) reach2[i + l] = columns[3 * lanes + l] * columns[3 * lanes + l];
-  }
-  for (std::size_t i = n; i < filled; ++i) low[0][i] = std::numeric_limits<float>::quiet_NaN();
-
   for (int d = 0; d < D; ++d) {
-    const Double8 middle_d = splat8(origin[d]);
-    float* const out = x[d].data();
-    for (std::size_t i = 0; i < n; ++i) {
-      const Index first = slices[i] * lanes;
-      if (first + lanes <= points.n) {
-        store_floats((load8(points.x[d] + first) - middle_d) * scales, out + i * lanes);
-      } else {
-        for (int l = 0; l < lanes; ++l)
-          out[i * lanes + static_cast<std::size_t>(l)] = first + l < points.n
-                                                             ? local(points.x[d][first + l], d)
-                                                             : std::numeric_limits<float>::quiet_NaN();
-      }
+    const Double8 middle = splat8(group.box.low[d] + (group.box.high[d] - group.box.low[d]) / 2);
+    const double* const from = points.x[d];
+    const Index* const slice = slices.data();
+    float* const to = x[d].data();
+    constexpr std::size_t ahead = 16;
+    for (std::size_t i = 0; i < long_slices; ++i) {
+      __builtin_prefetch(from + slice[std::min(i + ahead, long_slices - 1)] * lanes);
+      store_floats((load8(from + slice[i] * lanes) - middle) * scales, to + i * lanes);
     }
-    std::fill_n(out + n * lanes, lanes, std::numeric_limits<float>::infinity());
+    if (is_short)
+      store_floats((load_short(from, std::numeric_limits<double>::quiet_NaN()) - middle) * scales,
+                   to + long_slices * lanes);
+    for (std::size_t i = 0; i < n; i += lanes)
+      bound_rows(to + i * lanes, low[d].data() + i, high[d].data() + i);
+    std::fill_n(to + n * lanes, lanes, std::numeric_limits<float>::infinity());
   }
-  if (!radii.graded()) return;
-  for (std::size_t i = 0; i < n; ++i) {
-    const Index first = slices[i] * lanes;
-    if (first + lanes <= points.n) {
-      const Double8 r = load8(radii.each.data() + first) * scales;
-      store_floats(r * r, r2.data() + i * lanes);
-    } else {
-      for (int l = 0; l < lanes; ++l) {
-        const double r = first + l < points.n ? radii(first + l) * scale : 0;
-        r2[i * lanes + static_cast<std::size_t>(l)] = static_cast<float>(r * r);
-      }
-    }
+  std::fill_n(low[0].data() + n, floats, std::numeric_limits<float>::quiet_NaN());
+
+  if (!radii.graded()) {
+    const auto r = static_cast<float>(radii.one * scale);
+    std::fill_n(reach2.data(), n, r * r);
+    return;
   }
+  const auto store_squares = [&](const Double8& r, std::size_t i) {
+    const Double8 scaled = r * scales;
+    store_floats(scaled * scaled, r2.data() + i * lanes);
+  };
+  for (std::size_t i = 0; i < long_slices; ++i)
+    store_squares(load8(radii.each.data() + slices[i] * lanes), i);
+  if (is_short) store_squares(load_short(radii.each.data(), 0), long_slices);
+  float least[lanes];
+  for (std::size_t i = 0; i < n; i += lanes) bound_rows(r2.data() + i * lanes, least, reach2.data() + i);
   std::fill_n(r2.data() + n * lanes, lanes, 0.0f);
 }
 

@@ -16,24 +16,18 @@ template <int D>
 struct Neighbourhood {
   // `slices` to be filled by a search before. Particles are not copied for a group that is not compact: their
   // distances are not worth rounding.
-  void gather(const PointView<D>& points, const Radii& radii, const Clusters<D>& clusters,
-              const SliceGroup<D>& group);
+  void gather(const PointView<D>& points, const Radii& radii, const SliceGroup<D>& group);
 
-  float local(double at, int d) const { return static_cast<float>((at - origin[d]) * scale); }
   Index far_slice() const { return static_cast<Index>(slices.size()); }
 
   std::vector<Index> slices;
   bool compact = false;
   Index own = 0;  // place of the group's first slice
-  double origin[D], scale = 1;
   // Squared distances of pairs that are nearer to each other than a radius or little farther, and of their
   // boxes, are off by less.
   float tolerance = 0;
   AlignedArray<float> low[D], high[D], reach2;  // boxes, and their largest radii squared
   AlignedArray<float> x[D], r2;                 // particles, eight a slice; r2 where radii differ only
-
- private:
-  AlignedArray<float> rows_;
 };
 
 }  // namespace taut::detail::inline TAUT_SIMD_NAMESPACE

@@ -17,33 +17,50 @@ double volume(const Box<D>& box, double reach) {
   return v;
 }
 
+template <int D>
+Box<D> box_of(const PointView<D>& points, Index first, Index end) {
+  Box<D> box;
+  for (int d = 0; d < D; ++d) {
+    const double* const x = points.x[d];
+    double low = x[first], high = low;
+    for (Index i = first + 1; i < end; ++i) {
+      low = std::min(low, x[i]);
+      high = std::max(high, x[i]);
+    }
+    box.low[d] = low;
+    box.high[d] = high;
+  }
+  return box;
+}
+
+double largest_radius(const Radii& radii, Index first, Index end) {
+  if (!radii.graded()) return radii.one;
+  return *std::max_element(radii.each.data() + first, radii.each.data() + end);
+}
+
 }  // namespace
 
 template <int D>
-SliceGroup<D> group_from(const Clusters<D>& clusters, Index begin, Index last) {
-  SliceGroup<D> group{begin, begin + 1, {}, clusters.box(begin).radius, clusters.whole(begin)};
-  for (int d = 0; d < D; ++d) {
-    group.box.low[d] = clusters.box(begin).low[d];
-    group.box.high[d] = clusters.box(begin).high[d];
-  }
-  if (!group.compact) return group;
-  for (; group.end < std::min(last, begin + most_slices) && clusters.whole(group.end); ++group.end) {
-    const SliceBox& next = clusters.box(group.end);
-    Box<D> box;
-    for (int d = 0; d < D; ++d) {
-      box.low[d] = std::min(group.box.low[d], next.low[d]);
-      box.high[d] = std::max(group.box.high[d], next.high[d]);
+SliceGroup<D> group_from(const PointView<D>& points, const Radii& radii, const Clusters<D>& clusters,
+                         Index begin, Index last) {
+  SliceGroup<D> group{begin, begin, {}, 0, clusters.whole(begin)};
+  for (last = std::min(last, begin + most_slices); group.end < last; ++group.end) {
+    const Index first = group.end * lanes, end = std::min(first + lanes, points.n);
+    Box<D> box = box_of(points, first, end);
+    const double reach = std::max(group.reach, largest_radius(radii, first, end));
+    if (group.end > begin) {
+      if (!group.compact || !clusters.whole(group.end)) break;
+      box.add(group.box);
+      if (!(volume(box, reach) < largest_volume)) break;
     }
-    const double reach = std::max(group.reach, next.radius);
-    if (!(volume(box, reach) < largest_volume)) break;
     group.box = box;
     group.reach = reach;
   }
   return group;
 }
 
-template SliceGroup<1> group_from(const Clusters<1>&, Index, Index);
-template SliceGroup<2> group_from(const Clusters<2>&, Index, Index);
-template SliceGroup<3> group_from(const Clusters<3>&, Index, Index);
+template SliceGroup<1> group_from(const PointView<1>&, const Radii&, const Clusters<1>&, Index, Index);
+template SliceGroup<2> group_from(const PointView<2>&, const Radii&, const Clusters<2>&, Index, Index);
+template SliceGroup<3> group_from(const PointView<3>&, const Radii&, const Clusters<3>&, Index, Index);
 
 }  // namespace taut::detail

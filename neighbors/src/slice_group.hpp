@@ -15,6 +15,7 @@ struct SliceGroup {
 
 // The group that begins with slice `begin` and ends before `last` at the latest.
 template <int D>
-SliceGroup<D> group_from(const Clusters<D>& clusters, Index begin, Index last);
+SliceGroup<D> group_from(const PointView<D>& points, const Radii& radii, const Clusters<D>& clusters,
+                         Index begin, Index last);
 
 }  // namespace taut::detail

@@ -35,9 +35,9 @@ class SliceSearch {
   template <class Proceed>
   Index run(Index begin, Index end, EncodedSlices& to, Proceed&& proceed) {
     for (Index s = begin; s < end;) {
-      const auto group = group_from(clusters_, s, end);
+      const auto group = group_from(points_, radii_, clusters_, s, end);
       searcher_.find(group, work_, near_.slices);
-      near_.gather(points_, radii_, clusters_, group);
+      near_.gather(points_, radii_, group);
       for (; s < group.end; ++s) {
         if (!proceed(s)) return no_particle;
         const auto slice = make_slice(points_, radii_, s);
@@ -85,8 +85,9 @@ PairList search_with(const PointView<D>& points, const Radii& radii) {
   PairListBuilder builder(points.n);
   if (points.n == 0) return builder.build();
 
-  const Clusters<D> clusters(points, radii);
+  Clusters<D> clusters(points, radii);
   const Searcher searcher(points, radii, clusters);
+  clusters.drop_whole();
   PairListBuilder::check_slots(searcher.least_pairs() / lanes, points.n);
   using Search = SliceSearch<D, Searcher>;
   reserve_by_sample(Search(points, radii, clusters, searcher), clusters.slices(), builder);
