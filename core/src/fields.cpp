@@ -17,18 +17,19 @@ std::size_t alignment_of(std::size_t bytes) { return bytes >= 2 * huge_page ? hu
 
 }  // namespace
 
-void* allocate(std::size_t bytes) {
+void* allocate(std::size_t bytes, std::size_t sure) {
   const std::size_t align = alignment_of(bytes), rounded = (bytes + align - 1) / align * align;
   void* memory = std::aligned_alloc(align, rounded);
   if (!memory) throw std::bad_alloc();
 #ifdef __linux__
-  if (align == huge_page) madvise(memory, rounded, MADV_HUGEPAGE);
+  if (align == huge_page)
+    madvise(memory, sure == bytes ? rounded : sure / huge_page * huge_page, MADV_HUGEPAGE);
 #endif
   return memory;
 }
 
 void* allocate_zeroed(std::size_t bytes) {
-  void* memory = allocate(bytes);
+  void* memory = allocate(bytes, bytes);
   constexpr std::size_t chunk = 1 << 16;
   char* p = static_cast<char*>(memory);
   const auto chunks = static_cast<std::int64_t>((bytes + chunk - 1) / chunk);

@@ -24,7 +24,7 @@ class Buffer {
   // Room for `more` beyond the size, where they may be written before `grow` makes them part of it.
   T* room(std::size_t more) {
     if (size_ + more > capacity_) {
-      capacity_ = 2 * (size_ + more);
+      capacity_ = size_ + more + (size_ + more) / growth;
       auto larger = std::make_unique_for_overwrite<T[]>(capacity_);
       std::copy_n(data_.get(), size_, larger.get());
       data_ = std::move(larger);
@@ -32,14 +32,10 @@ class Buffer {
     return end();
   }
   void grow_to(const T* end) { size_ = static_cast<std::size_t>(end - data()); }
-  // What was there is lost where it has to grow.
-  void resize(std::size_t size) {
-    size_ = 0;
-    room(size);
-    size_ = size;
-  }
 
  private:
+  // By a quarter at a time: what buffers hold is copied on soon, and many may wait for that.
+  static constexpr std::size_t growth = 4;
   std::unique_ptr<T[]> data_;
   std::size_t size_ = 0, capacity_ = 0;
 };

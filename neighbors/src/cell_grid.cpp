@@ -53,10 +53,7 @@ CellGrid<D>::CellGrid(const Clusters<D>& clusters, std::span<const Index> member
   double radius = 0, first[D], last[D], longest[D] = {};
   const Cluster<D>& any = cluster(0);
   for (int d = 0; d < D; ++d) first[d] = last[d] = any.box.low[d];
-#pragma omp parallel for schedule(static) reduction(max                      \
-                                                    : radius, last, longest) \
-    reduction(min                                                            \
-              : first) if (worth_threads(n_))
+#pragma omp parallel for reduction(max : radius, last, longest) reduction(min : first) if (worth_threads(n_))
   for (Index i = 0; i < n_; ++i) {
     const Cluster<D>& c = cluster(i);
     radius = std::max(radius, c.radius);

@@ -1,5 +1,5 @@
 #pragma once
-// Boxes of slices, and of the parts of slices whose particles are not near each other: what cells hold.
+// Boxes of slices, and of parts of slices whose particles are not near each other: cells are made of them.
 
 #include <algorithm>
 #include <span>
@@ -54,8 +54,8 @@ class Clusters {
                         : parts_[static_cast<std::size_t>(c - slices())];
   }
 
-  // Gives back the memory of whole slices, a fifth of a small list's: only grids are made from them, what is
-  // near a group is bounded anew.
+  // Gives back the memory of whole slices, as much as a third of the list: grids are made from them, but what
+  // is near a group is bounded anew.
   void drop_whole() { whole_ = {}; }
 
  private:

@@ -400,10 +400,8 @@ inline void deal(const Index* numbers, const std::uint8_t* masks, std::size_t n,
     count[l] = static_cast<std::size_t>(end[l] - (out + static_cast<std::size_t>(l) * stride));
 }
 
-// Rows of eight four-byte numbers, `stride` apart, become columns.
-template <class T>
-inline void transpose8(const T* rows, std::size_t stride, T* columns, std::size_t column_stride) {
-  static_assert(sizeof(T) == 4);
+// Rows of eight numbers, `stride` apart, become columns, one after the other.
+inline void transpose8(const Index* rows, std::size_t stride, Index* columns) {
 #if TAUT_SIMD >= 1
   __m256 r[lanes], t[lanes];
   for (std::size_t i = 0; i < lanes; ++i) r[i] = load_part<__m256>(rows + i * stride);
@@ -419,29 +417,47 @@ inline void transpose8(const T* rows, std::size_t stride, T* columns, std::size_
   for (std::size_t i = 0; i < 4; ++i) {
     const __m256 low = _mm256_permute2f128_ps(r[i], r[i + 4], 0x20),
                  high = _mm256_permute2f128_ps(r[i], r[i + 4], 0x31);
-    std::memcpy(columns + i * column_stride, &low, sizeof low);
-    std::memcpy(columns + (i + 4) * column_stride, &high, sizeof high);
+    std::memcpy(columns + i * lanes, &low, sizeof low);
+    std::memcpy(columns + (i + 4) * lanes, &high, sizeof high);
   }
 #else
   for (std::size_t i = 0; i < lanes; ++i)
-    for (std::size_t j = 0; j < lanes; ++j) columns[i * column_stride + j] = rows[j * stride + i];
+    for (std::size_t j = 0; j < lanes; ++j) columns[i * lanes + j] = rows[j * stride + i];
 #endif
 }
 
-// The least and the largest of each of eight rows of eight floats; NaN counts where a row begins with it
-// only.
+// The least and the largest of each of eight rows of eight floats. In a row NaN may only follow numbers, and
+// is left out.
 inline void bound_rows(const float* rows, float* least, float* largest) {
-  typedef float Column __attribute__((vector_size(lanes * sizeof(float))));
-  float columns[lanes * lanes];
-  transpose8(rows, lanes, columns, lanes);
-  Column low = load_part<Column>(columns), high = low;
-  for (int i = 1; i < lanes; ++i) {
-    const Column next = load_part<Column>(columns + i * lanes);
-    low = next < low ? next : low;
-    high = next > high ? next : high;
+#if TAUT_SIMD >= 1
+  __m256 r[lanes];
+  for (int i = 0; i < lanes; ++i) r[i] = load_part<__m256>(rows + i * lanes);
+  const auto fold = [&r](auto choose, float* to) {  // choose(a, b) is b where either is NaN
+    __m256 halves[4], quarters[2];
+    for (int i = 0; i < 4; ++i)
+      halves[i] =
+          choose(_mm256_permute2f128_ps(r[i], r[i + 4], 0x31), _mm256_permute2f128_ps(r[i], r[i + 4], 0x20));
+    for (int i = 0; i < 2; ++i)
+      quarters[i] = choose(_mm256_shuffle_ps(halves[2 * i], halves[2 * i + 1], 0xee),
+                           _mm256_shuffle_ps(halves[2 * i], halves[2 * i + 1], 0x44));
+    const __m256 all = choose(_mm256_shuffle_ps(quarters[0], quarters[1], 0xdd),
+                              _mm256_shuffle_ps(quarters[0], quarters[1], 0x88));
+    std::memcpy(to, &all, sizeof all);
+  };
+  fold([](__m256 a, __m256 b) { return _mm256_min_ps(a, b); }, least);
+  fold([](__m256 a, __m256 b) { return _mm256_max_ps(a, b); }, largest);
+#else
+  for (int i = 0; i < lanes; ++i) {
+    const float* const row = rows + i * lanes;
+    float low = row[0], high = row[0];
+    for (int l = 1; l < lanes; ++l) {
+      low = row[l] < low ? row[l] : low;
+      high = row[l] > high ? row[l] : high;
+    }
+    least[i] = low;
+    largest[i] = high;
   }
-  std::memcpy(least, &low, sizeof low);
-  std::memcpy(largest, &high, sizeof high);
+#endif
 }
 
 }  // namespace taut::detail::inline TAUT_SIMD_NAMESPACE

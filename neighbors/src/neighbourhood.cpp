@@ -40,7 +40,7 @@ void Neighbourhood<D>::gather(const PointView<D>& points, const Radii& radii, co
   }
 
   // The last slice of all may be short: it is copied from here.
-  const bool is_short = (slices.back() + 1) * lanes > points.n;
+  const bool is_short = slices.back() * lanes > points.n - lanes;
   const std::size_t long_slices = n - is_short;
   double rest[lanes];
   const auto load_short = [&](const double* numbers, double none) {

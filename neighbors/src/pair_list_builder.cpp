@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 #include <taut/core/error.hpp>
+#include <type_traits>
 
 #include "parallel.hpp"
 
@@ -45,9 +46,14 @@ void PairListBuilder::check_slots(double slots, double particles) {
 }
 
 void PairListBuilder::reserve(double slots, double gathered) {
-  list_.first_ = AlignedArray<Index>::for_overwrite(static_cast<std::size_t>(slots));
-  list_.mask_ = AlignedArray<std::uint8_t>::for_overwrite(static_cast<std::size_t>(slots));
-  list_.index_ = AlignedArray<Index>::for_overwrite(static_cast<std::size_t>(gathered) * lanes);
+  constexpr double margin = 1.2;
+  const auto make_room = [](auto& array, double size) {
+    using Array = std::remove_reference_t<decltype(array)>;
+    array = Array::for_overwrite(static_cast<std::size_t>(margin * size), static_cast<std::size_t>(size));
+  };
+  make_room(list_.first_, slots);
+  make_room(list_.mask_, slots);
+  make_room(list_.index_, gathered * lanes);
 }
 
 detail::EncodedSlices PairListBuilder::Queue::take() {

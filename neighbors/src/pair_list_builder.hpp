@@ -19,7 +19,8 @@ class PairListBuilder {
   Index begin_slice(Index chunk) const { return chunk * chunk_slices; }
   Index end_slice(Index chunk) const { return std::min((chunk + 1) * chunk_slices, slices_); }
 
-  // Makes room for so many slots, gathered ones among them. What does not fit is moved at the end.
+  // Makes room for so many slots, gathered ones among them, and a few more. What does not fit is moved at the
+  // end.
   void reserve(double slots, double gathered);
 
   // The chunks of one thread, while they wait for their places.

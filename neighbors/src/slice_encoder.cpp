@@ -144,7 +144,7 @@ Index SliceEncoder::gather(Index own, std::size_t loose, EncodedSlices& out) {
   }
   out.mask.grow_to(masks + slots);
   Index* const to = out.index.room((slots + lanes) * lanes);
-  for (std::size_t g = 0; g < slots; g += lanes) transpose8(dealt_.data() + g, stride, to + g * lanes, lanes);
+  for (std::size_t g = 0; g < slots; g += lanes) transpose8(dealt_.data() + g, stride, to + g * lanes);
   out.index.grow_to(to + slots * lanes);
   return static_cast<Index>(slots);
 }

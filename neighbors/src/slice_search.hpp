@@ -64,14 +64,13 @@ class SliceSearch {
 template <class Search>
 void reserve_by_sample(Search&& search, Index slices, PairListBuilder& builder) {
   constexpr Index samples = 128;
-  constexpr double margin = 1.2;
   if (slices < 32 * samples) return;
   EncodedSlices sample;
   for (Index i = 0; i < samples; ++i) {
     const auto s = static_cast<Index>(std::int64_t{slices} * i / samples);
     search.run(s, s + 1, sample, [](Index) { return true; });
   }
-  const double scale = margin * slices / samples;
+  const double scale = static_cast<double>(slices) / samples;
   builder.reserve(scale * static_cast<double>(sample.mask.size()),
                   scale * static_cast<double>(sample.index.size()) / lanes);
 }
@@ -82,13 +81,13 @@ template <int D, class Searcher>
 PairList search_with(const PointView<D>& points, const Radii& radii) {
   check_points(points);
   check_radii(radii, points.n);
-  PairListBuilder builder(points.n);
-  if (points.n == 0) return builder.build();
+  if (points.n == 0) return PairListBuilder(0).build();
 
   Clusters<D> clusters(points, radii);
   const Searcher searcher(points, radii, clusters);
   clusters.drop_whole();
   PairListBuilder::check_slots(searcher.least_pairs() / lanes, points.n);
+  PairListBuilder builder(points.n);
   using Search = SliceSearch<D, Searcher>;
   reserve_by_sample(Search(points, radii, clusters, searcher), clusters.slices(), builder);
 

@@ -18,8 +18,9 @@ namespace taut {
 /// Zeroed memory on a 64-byte boundary, to be given to std::free. Its pages are first touched by the threads
 /// of a static OpenMP schedule, the same that later loop over it. \throws std::bad_alloc
 void* allocate_zeroed(std::size_t bytes);
-/// The same without zeros: pages that are never written take no memory.
-void* allocate(std::size_t bytes);
+/// The same without zeros: pages that are never written take no memory. Huge ones are for the first `sure`
+/// bytes at most, those that will be written, as they count as a whole.
+void* allocate(std::size_t bytes, std::size_t sure);
 
 /// A fixed-size array on 64-byte boundaries, zeroed (see `allocate_zeroed`). Copyable; never grows.
 template <class T>
@@ -31,13 +32,15 @@ class AlignedArray {
   explicit AlignedArray(std::size_t n) : size_(n) {
     if (n) data_.reset(static_cast<T*>(allocate_zeroed(n * sizeof(T))));
   }
-  /// Not zeroed, to be written before it is read.
-  static AlignedArray for_overwrite(std::size_t n) {
+  /// Not zeroed, to be written before it is read. Where fewer than n elements are `sure` to be written, the
+  /// others take no memory until they are.
+  static AlignedArray for_overwrite(std::size_t n, std::size_t sure) {
     AlignedArray a;
     a.size_ = n;
-    if (n) a.data_.reset(static_cast<T*>(allocate(n * sizeof(T))));
+    if (n) a.data_.reset(static_cast<T*>(allocate(n * sizeof(T), std::min(n, sure) * sizeof(T))));
     return a;
   }
+  static AlignedArray for_overwrite(std::size_t n) { return for_overwrite(n, n); }
   AlignedArray(const AlignedArray& o) : AlignedArray(o.size_) {
     if (size_) std::memcpy(data_.get(), o.data_.get(), size_ * sizeof(T));
   }
