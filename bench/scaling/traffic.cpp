@@ -39,11 +39,15 @@ Traffic total_lagrangian_traffic(const Cloud<D>& cloud, const Method& method) {
   const auto n = static_cast<double>(cloud.size());
   const bool recomputed = op.precision == PairPrecision::recomputed;
 
-  // Masks of slots are for recomputed vectors only; shared vectors and matrices stay in the cache, their
-  // codes do not.
-  const auto list =
-      static_cast<double>(pairs.bytes()) - (recomputed ? 0 : static_cast<double>(pairs.slots()));
-  const auto payload = static_cast<double>(op.vectors_f.bytes() + op.vectors_d.bytes() + op.code.bytes());
+  // Masks of slots are for recomputed vectors only. Shared vectors and matrices stay in the cache, and with
+  // the vectors come the slots, in place of the list's but for index blocks; those of regular lattices stay
+  // there, too, yet are counted once as if they did not.
+  const bool shared = op.precision == PairPrecision::shared;
+  const auto slots = static_cast<double>(pairs.slots());
+  const auto list = shared ? (1 - pairs.contiguous_fraction()) * slots * lanes * sizeof(Index)
+                           : static_cast<double>(pairs.bytes()) - (recomputed ? 0 : slots);
+  const auto payload = static_cast<double>(op.vectors_f.bytes() + op.vectors_d.bytes() +
+                                           op.slice_slots.bytes() + op.slots.bytes());
   const auto adjoint = op.adjoint_f.empty() && op.adjoint_d.empty()
                            ? payload
                            : static_cast<double>(op.adjoint_f.bytes() + op.adjoint_d.bytes());

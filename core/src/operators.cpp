@@ -75,11 +75,10 @@ void moments_of_slice(Index s, const PairList& pairs, const Payload& payload, co
   for (auto& c : m.sum) c = pack(0);
   m.scale = pack(0);
   const auto vectors = payload.slice(s);
-  for_slots(pairs, s, [&](std::int64_t k, auto&& at) {
+  for_slots(pairs, payload, s, [&](std::int64_t k, auto&& at) {
     Pack Xab[D], gg = pack(0), XX = pack(0);
-    const PackMask pair = lanes_of(pairs.mask(k));
     for (int d = 0; d < D; ++d) {
-      Xab[d] = pair ? at(X.c[d]) - Xi[d] : pack(0);
+      Xab[d] = at(X.c[d]) - Xi[d];
       XX += Xab[d] * Xab[d];
     }
     vectors.components(k, at, [&](int e, Pack g) {

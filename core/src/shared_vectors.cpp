@@ -7,6 +7,7 @@
 #include <taut/internal/block_dictionary.hpp>
 #include <taut/internal/pair_payload.hpp>
 #include <taut/internal/shared_vectors.hpp>
+#include <unordered_map>
 #include <unordered_set>
 
 namespace taut {
@@ -67,7 +68,7 @@ Index chunks_of(const PairList& pairs) { return (pairs.slices() + chunk_slices -
 
 // Turns the numbers of blocks into codes that also tell which components they have.
 template <int D>
-void mark_components(PairOperator<D>& op) {
+void mark_components(const PairOperator<D>& op, AlignedArray<Index>& code) {
   constexpr std::size_t block = D * lanes;
   const std::size_t n = op.blocks.size() / block;
   if (n > static_cast<std::size_t>(std::numeric_limits<Index>::max() >> D))
@@ -77,15 +78,56 @@ void mark_components(PairOperator<D>& op) {
                     n));
   std::vector<Index> codes(n);
   for (std::size_t i = 0; i < n; ++i) {
-    Index code = static_cast<Index>(i) << D;
+    Index of_block = static_cast<Index>(i) << D;
     for (int d = 0; d < D; ++d) {
       const double* values = op.blocks.data() + i * block + static_cast<std::size_t>(d * lanes);
-      if (std::any_of(values, values + lanes, [](double g) { return g != 0; })) code |= 1 << d;
+      if (std::any_of(values, values + lanes, [](double g) { return g != 0; })) of_block |= 1 << d;
     }
-    codes[i] = code;
+    codes[i] = of_block;
   }
-#pragma omp parallel for schedule(static) if (op.code.size() > 4096)
-  for (std::size_t k = 0; k < op.code.size(); ++k) op.code[k] = codes[static_cast<std::size_t>(op.code[k])];
+#pragma omp parallel for schedule(static) if (code.size() > 4096)
+  for (std::size_t k = 0; k < code.size(); ++k) code[k] = codes[static_cast<std::size_t>(code[k])];
+}
+
+// What a slot is like, wherever its slice stands. Index blocks are a slice's own.
+SharedSlot shared_slot(const PairList& pairs, const AlignedArray<Index>& code, Index s, std::int64_t k) {
+  return {pairs.first(k) - (pairs.is_contiguous(s, k) ? s * lanes : 0), code[static_cast<std::size_t>(k)]};
+}
+
+// Keeps the slots of slices that are alike once, those of the first of them: neither they nor their order
+// depend on the threads.
+template <int D>
+void share_slots(const PairList& pairs, const AlignedArray<Index>& code, PairOperator<D>& op) {
+  const Index slices = pairs.slices();
+  std::vector<BlockKey> keys(static_cast<std::size_t>(slices));
+#pragma omp parallel for schedule(static) if (slices > chunk_slices)
+  for (Index s = 0; s < slices; ++s) {
+    BlockKey& key = keys[static_cast<std::size_t>(s)];
+    key.add(static_cast<std::uint64_t>(pairs.gathered(s) - pairs.begin(s)));
+    for (std::int64_t k = pairs.begin(s); k < pairs.begin(s + 1); ++k) {
+      const SharedSlot slot = shared_slot(pairs, code, s, k);
+      key.add(static_cast<std::uint64_t>(static_cast<std::uint32_t>(slot.first)) << 32 |
+              static_cast<std::uint32_t>(slot.code));
+    }
+  }
+  std::unordered_map<BlockKey, std::int64_t, BlockKey::Hash> begins;
+  std::vector<Index> first_alike;
+  std::int64_t slots = 0;
+  op.slice_slots = AlignedArray<SharedSlots>(static_cast<std::size_t>(slices));
+  for (Index s = 0; s < slices; ++s) {
+    const auto [at, fresh] = begins.try_emplace(keys[static_cast<std::size_t>(s)], slots);
+    const std::int64_t begin = pairs.begin(s), count = pairs.begin(s + 1) - begin;
+    op.slice_slots[static_cast<std::size_t>(s)] = {at->second, static_cast<Index>(pairs.gathered(s) - begin),
+                                                   static_cast<Index>(count)};
+    if (!fresh) continue;
+    first_alike.push_back(s);
+    slots += count;
+  }
+  op.slots = AlignedArray<SharedSlot>(static_cast<std::size_t>(slots));
+  std::size_t to = 0;
+  for (const Index s : first_alike)
+    for (std::int64_t k = pairs.begin(s); k < pairs.begin(s + 1); ++k)
+      op.slots[to++] = shared_slot(pairs, code, s, k);
 }
 
 }  // namespace
@@ -129,8 +171,10 @@ void share_vectors(const Particles<D>& p, const PairList& pairs, const Kernel& k
             }
           });
         });
-  dictionary.finish(op.code, op.blocks);
-  mark_components<D>(op);
+  AlignedArray<Index> code;  // of each slot of the list
+  dictionary.finish(code, op.blocks);
+  mark_components<D>(op, code);
+  share_slots<D>(pairs, code, op);
 }
 
 #define TAUT_INSTANTIATE(D)                                                                         \

@@ -116,7 +116,7 @@ void TlBondAssociated<D>::gradient_pass(const Payload& payload, const Columns<D>
 #pragma omp parallel for schedule(static) if (p_.n > parallel_from)
   for (Index s = 0; s < groups_.slices(); ++s) {
     Pack F[D * D];
-    prefetch_neighbours(pairs_, s, x);
+    prefetch_neighbours(pairs_, s, x, payload);
     gradient_of_slice<D>(s, pairs_, payload, x, {op_, s}, F);
     if (offset) this->add_offset(s, F);
     if ((s + 1) * lanes > p_.n) this->fill_padding(s, F);
@@ -244,7 +244,7 @@ void TlBondAssociated<D>::force_pass(const Payload& payload) {
 #pragma omp parallel for schedule(static) if (p_.n > parallel_from)
   for (Index s = 0; s < groups_.slices(); ++s) {
     Pack force[D];
-    prefetch_neighbours(pairs_, s, Q);
+    prefetch_neighbours(pairs_, s, Q, payload);
     force_of_slice<D>(s, pairs_, payload, Q, {op_, s}, force);
     const Index i = s * lanes;
     const Pack per_mass = 1 / load(p_.m.component(0) + i);

@@ -73,7 +73,7 @@ void TlDisplacement<D>::gradient_pass(const Payload& payload) {
       PackMask bad{};
       for (Index s = first; s < last; ++s) {
         Pack f[D * D];
-        prefetch_neighbours(pairs_, s, x);
+        prefetch_neighbours(pairs_, s, x, payload);
         gradient_of_slice<D>(s, pairs_, payload, x, {op_, s}, f);
         add_offset(s, f);
         if ((s + 1) * lanes > p_.n) this->fill_padding(s, f);
@@ -131,7 +131,7 @@ void TlDisplacement<D>::force_pass(const Payload& payload) {
 #pragma omp parallel for schedule(static) if (p_.n > parallel_from)
   for (Index s = 0; s < groups_.slices(); ++s) {
     Pack force[D];
-    prefetch_neighbours(pairs_, s, Q);
+    prefetch_neighbours(pairs_, s, Q, payload);
     force_of_slice<D>(s, pairs_, payload, Q, {op_, s}, force);
     if (control_) control_->add_to(s, x, force);
     const Index i = s * lanes;

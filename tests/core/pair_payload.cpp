@@ -3,11 +3,14 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <taut/core/error.hpp>
 #include <taut/core/formulation.hpp>
 #include <taut/internal/assembly.hpp>
+#include <taut/internal/pair_payload.hpp>
 #include <vector>
 
 #include "discretised.hpp"
@@ -118,16 +121,51 @@ TEST_CASE("codes of shared vectors name their components, and a lattice leaves m
   // A corner that no binary fraction meets.
   const auto cloud = make_cloud(box<3>({0.1, 0.7, -0.3}, {1.1, 1.7, 0.7}), {.dx = 1.0 / 17});
   const Discretised<3> lattice(cloud, method);
-  Index kept = 0;
-  for (const Index code : lattice.op.code)
+  for (const SharedSlot& slot : lattice.op.slots)
     for (int d = 0; d < 3; ++d) {
-      const double* block = lattice.op.blocks.data() + (code >> 3) * (3 * lanes) + d * lanes;
+      const double* block = lattice.op.blocks.data() + (slot.code >> 3) * (3 * lanes) + d * lanes;
       const bool any = std::any_of(block, block + lanes, [](double g) { return g != 0; });
-      CHECK(any == static_cast<bool>(code >> d & 1));
-      kept += any;
+      CHECK(any == static_cast<bool>(slot.code >> d & 1));
     }
+  Index kept = 0, slots = 0;
+  for (const SharedSlots& of : lattice.op.slice_slots)
+    for (std::int64_t k = of.begin; k < of.begin + of.count; ++k, ++slots)
+      kept += std::popcount(static_cast<unsigned>(lattice.op.slots[static_cast<std::size_t>(k)].code & 7));
   // Of 18 neighbours six lie along an axis and twelve in a plane: 30 of 54 components.
-  CHECK(static_cast<double>(kept) / (3 * static_cast<double>(lattice.op.code.size())) < 0.6);
+  CHECK(static_cast<double>(kept) / (3 * static_cast<double>(slots)) < 0.6);
+}
+
+TEST_CASE("slices that are alike keep their slots once, and each finds its neighbours in the list's order") {
+  Method method;
+  method.pair_precision = PairPrecision::shared;
+  const auto check = [&](const Discretised<3>& body) {
+    // A field of the particles' own numbers: what a slot reads of it are its neighbours.
+    Field number(static_cast<std::size_t>(body.particles.total), 1);
+    std::iota(number.flat().begin(), number.flat().end(), 0.0);
+    const SharedVectors<3> vectors{body.op.slice_slots.data(), body.op.slots.data(), body.op.blocks.data()};
+    bool same = true;
+    for (Index s = 0; s < body.pairs.slices(); ++s) {
+      std::vector<double> shared, listed;
+      const auto into = [&](std::vector<double>& neighbours) {
+        return [&](std::int64_t, auto&& at) {
+          const Pack b = at(number.component(0));
+          for (int l = 0; l < lanes; ++l) neighbours.push_back(b[l]);
+        };
+      };
+      for_slots(body.pairs, vectors, s, into(shared));
+      for_slots(body.pairs, s, into(listed));
+      same = same && shared == listed && furthest(body.pairs, vectors, s) == furthest(body.pairs, s);
+    }
+    CHECK(same);
+  };
+  const Discretised<3> lattice(make_cloud(box<3>(Vec<3>::Zero(), Vec<3>::Ones()), {.dx = 1.0 / 32}), method);
+  check(lattice);
+  CHECK(static_cast<double>(lattice.op.slots.size()) < 0.25 * static_cast<double>(lattice.pairs.slots()));
+  const Discretised<3> jittered(
+      make_cloud(box<3>(Vec<3>::Zero(), Vec<3>::Ones()), {.dx = 1.0 / 12, .jitter = 0.2}), method);
+  REQUIRE(jittered.pairs.contiguous_fraction() < 1);
+  check(jittered);
+  CHECK(static_cast<double>(jittered.op.slots.size()) > 0.9 * static_cast<double>(jittered.pairs.slots()));
 }
 
 TEST_CASE("forces of every payload have the same bits for one and two threads") {

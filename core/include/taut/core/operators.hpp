@@ -15,6 +15,18 @@ namespace taut {
 
 class KernelTable;
 
+/// A slot of a slice whose pair vectors are shared. Slices that are alike but for their place keep their
+/// slots once: on a lattice a pass over them so reads next to nothing but fields.
+struct SharedSlot {
+  Index first;  ///< contiguous: the neighbour of lane 0 less the slice's first particle; else the index block
+  Index code;   ///< of the vectors
+};
+/// The slots of one slice, the contiguous ones first.
+struct SharedSlots {
+  std::int64_t begin;
+  Index contiguous, count;
+};
+
 /// A gradient operator and its adjoint, in factored form: with one vector G_ab for each directed pair and one
 /// matrix M_a for each particle,
 ///   F_a = [sum_b x_ab (x) G_ab] M_a^T + F0_a,   x_ab = x_b - x_a,
@@ -34,9 +46,10 @@ struct PairOperator {
   AlignedArray<double> vectors_d;
   AlignedArray<float> adjoint_f;  ///< -G_ba, where it differs from G_ab; else empty
   AlignedArray<double> adjoint_d;
-  // Shared: slot k has the vectors of block `code[k] >> D`, laid out as above; bit d of the code is set where
+  // Shared: a slot has the vectors of block `code >> D`, laid out as above; bit d of the code is set where
   // component d is not zero in all lanes.
-  AlignedArray<Index> code;
+  AlignedArray<SharedSlots> slice_slots;  // of each slice, in `slots`
+  AlignedArray<SharedSlot> slots;
   AlignedArray<double> blocks;
   // Recomputed.
   std::shared_ptr<const KernelTable> table;
@@ -66,9 +79,9 @@ struct PairOperator {
     return adjoint_d.empty() ? vectors_d.data() : adjoint_d.data();
   }
   std::size_t bytes() const {
-    return vectors_f.bytes() + vectors_d.bytes() + adjoint_f.bytes() + adjoint_d.bytes() + code.bytes() +
-           blocks.bytes() + slice_code.bytes() + slice_blocks.bytes() + weight.bytes() + M.bytes() +
-           F0.bytes() + sum.bytes();
+    return vectors_f.bytes() + vectors_d.bytes() + adjoint_f.bytes() + adjoint_d.bytes() +
+           slice_slots.bytes() + slots.bytes() + blocks.bytes() + slice_code.bytes() + slice_blocks.bytes() +
+           weight.bytes() + M.bytes() + F0.bytes() + sum.bytes();
   }
 };
 

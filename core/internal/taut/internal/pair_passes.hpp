@@ -18,7 +18,7 @@ TAUT_INLINE void outer_sum_of_slice(Index s, const PairList& pairs, const Payloa
   for (int d = 0; d < D; ++d) xi[d] = load(x.c[d] + s * lanes);
   for (int c = 0; c < D * D; ++c) sum[c] = pack(0);
   const auto vectors = payload.slice(s);
-  for_slots(pairs, s, [&](std::int64_t k, auto&& at) TAUT_INLINE_LAMBDA {
+  for_slots(pairs, payload, s, [&](std::int64_t k, auto&& at) TAUT_INLINE_LAMBDA {
     Pack xab[D];
     for (int d = 0; d < D; ++d) xab[d] = at(x.c[d]) - xi[d];
     vectors.components(k, at, [&](int e, Pack g) TAUT_INLINE_LAMBDA {
@@ -50,7 +50,7 @@ TAUT_INLINE void force_of_slice(Index s, const PairList& pairs, const Payload& p
     for (int e = 1; e < D; ++e) force[d] += load(Q.c[d * D + e] + i) * of.sum(e);
   }
   const auto vectors = payload.adjoint().slice(s);
-  for_slots(pairs, s, [&](std::int64_t k, auto&& at) TAUT_INLINE_LAMBDA {
+  for_slots(pairs, payload, s, [&](std::int64_t k, auto&& at) TAUT_INLINE_LAMBDA {
     vectors.components(k, at, [&](int e, Pack g) TAUT_INLINE_LAMBDA {
       for (int d = 0; d < D; ++d) force[d] += at(Q.c[d * D + e]) * g;
     });

@@ -31,21 +31,10 @@ TAUT_INLINE void for_slots(const PairList& pairs, Index s, F&& f) {
     f(k, [at = pairs.block(k)](const double* p) TAUT_INLINE_LAMBDA { return gather(p, at); });
 }
 
-/// Asks for what slice s will be the first to touch, a few slices before its turn: the neighbours furthest
-/// on. A component of every row of neighbours is a stream of its own, more than hardware prefetchers follow.
-template <int N>
-TAUT_INLINE void prefetch_neighbours(const PairList& pairs, Index s, const Columns<N>& columns) {
-  constexpr Index ahead = 4;
-  if (s + ahead >= pairs.slices()) return;
-  const std::int64_t k = pairs.gathered(s + ahead);
-  if (k == pairs.begin(s + ahead)) return;
-  const Index last = pairs.first(k - 1) + lanes - 1;
-  for (int c = 0; c < N; ++c) __builtin_prefetch(columns.c[c] + last);
-}
-
 // A payload gives, for one slice, the eight pair vectors G_ab of a slot, component by component:
 // `slice(s).components(k, at, f)` calls f(d, G_d), where G_d is zero in lanes without a pair. It may leave
-// out components that are zero in all lanes.
+// out components that are zero in all lanes. It counts slots as the pair list does, or has its own way to go
+// over them: then `for_slots` and `furthest` have overloads for it.
 
 template <int D, class Real>
 struct StoredVectors {
@@ -61,7 +50,8 @@ struct StoredVectors {
 
 template <int D>
 struct SharedVectors {
-  const Index* code;
+  const SharedSlots* slots_of;
+  const SharedSlot* slots;
   const double* blocks;
 
   const SharedVectors& adjoint() const { return *this; }
@@ -70,7 +60,7 @@ struct SharedVectors {
   TAUT_INLINE void components(std::int64_t k, const At&, F&& f) const {
     // On a lattice most vectors lie along an axis or in a plane of two: what they leave out need not be
     // loaded.
-    const Index c = code[k];
+    const Index c = slots[k].code;
     const double* block = blocks + static_cast<std::int64_t>(c >> D) * (D * lanes);
     for (int d = 0; d < D; ++d)
       if (c >> d & 1) f(d, load(block + d * lanes));
@@ -110,6 +100,54 @@ struct RecomputedVectors {
   }
 };
 
+/// The same, with k as the payload counts slots.
+template <class Payload, class F>
+TAUT_INLINE void for_slots(const PairList& pairs, const Payload&, Index s, F&& f) {
+  for_slots(pairs, s, f);
+}
+template <int D, class F>
+TAUT_INLINE void for_slots(const PairList& pairs, const SharedVectors<D>& shared, Index s, F&& f) {
+  const SharedSlots of = shared.slots_of[s];
+  const std::int64_t gathered = of.begin + of.contiguous, end = of.begin + of.count;
+  const Index own = s * lanes;
+  for (std::int64_t k = of.begin; k < gathered; ++k)
+    f(k,
+      [first = own + shared.slots[k].first](const double* p) TAUT_INLINE_LAMBDA { return load(p + first); });
+  for (std::int64_t k = gathered; k < end; ++k)
+    f(k, [at = pairs.indices(shared.slots[k].first)](const double* p)
+             TAUT_INLINE_LAMBDA { return gather(p, at); });
+}
+
+/// The last neighbour of a slice's last contiguous slot, or -1 where all are gathered.
+TAUT_INLINE Index furthest(const PairList& pairs, Index s) {
+  const std::int64_t k = pairs.gathered(s);
+  return k == pairs.begin(s) ? -1 : pairs.first(k - 1) + lanes - 1;
+}
+/// The same, with the slots as the payload keeps them.
+template <class Payload>
+TAUT_INLINE Index furthest(const PairList& pairs, const Payload&, Index s) {
+  return furthest(pairs, s);
+}
+template <int D>
+TAUT_INLINE Index furthest(const PairList&, const SharedVectors<D>& shared, Index s) {
+  const SharedSlots of = shared.slots_of[s];
+  if (of.contiguous == 0) return -1;
+  return (s + 1) * lanes - 1 + shared.slots[of.begin + of.contiguous - 1].first;
+}
+
+/// Asks for what slice s will be the first to touch, a few slices before its turn: the neighbours furthest
+/// on. A component of every row of neighbours is a stream of its own, more than hardware prefetchers follow.
+/// `payload` is that of the loop over the slots, if it has one.
+template <int N, class... Payload>
+TAUT_INLINE void prefetch_neighbours(const PairList& pairs, Index s, const Columns<N>& columns,
+                                     const Payload&... payload) {
+  constexpr Index ahead = 4;
+  if (s + ahead >= pairs.slices()) return;
+  const Index last = furthest(pairs, payload..., s + ahead);
+  if (last < 0) return;
+  for (int c = 0; c < N; ++c) __builtin_prefetch(columns.c[c] + last);
+}
+
 /// M_a and sum_b G_ab of the eight particles of a slice.
 template <int D>
 struct SliceCoefficients {
@@ -146,7 +184,7 @@ auto with_payload(const PairOperator<D>& op, const PairList& pairs, const Field&
     case PairPrecision::double_precision:
       return f(StoredVectors<D, double>{op.vectors_d.data(), op.adjoint(op.vectors_d.data())});
     case PairPrecision::shared:
-      return f(SharedVectors<D>{op.code.data(), op.blocks.data()});
+      return f(SharedVectors<D>{op.slice_slots.data(), op.slots.data(), op.blocks.data()});
     case PairPrecision::recomputed:
       return f(RecomputedVectors<D>{*op.table, pairs, Columns<D>(X), op.weight_product,
                                     op.weight.empty() ? nullptr : op.weight.component(0)});

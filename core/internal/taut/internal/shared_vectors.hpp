@@ -20,7 +20,7 @@ template <int D>
 double distinct_fraction(const Particles<D>& particles, const PairList& pairs, double support,
                          const Field& weights);
 
-/// Fills `code` and `blocks` of an operator whose weights are given.
+/// Fills `slice_slots`, `slots` and `blocks` of an operator whose weights are given.
 template <int D>
 void share_vectors(const Particles<D>& particles, const PairList& pairs, const Kernel& kernel, double h,
                    PairOperator<D>& op);

@@ -32,8 +32,10 @@ class PairList {
   /// arrays. Gathered slot: the number of its index block.
   Index first(std::int64_t k) const { return first_[k]; }
   /// The eight neighbour indices of a gathered slot.
-  const Index* block(std::int64_t k) const {
-    return index_.data() + static_cast<std::int64_t>(first_[k]) * lanes;
+  const Index* block(std::int64_t k) const { return indices(first_[k]); }
+  /// Those of an index block, by its number.
+  const Index* indices(Index number) const {
+    return index_.data() + static_cast<std::int64_t>(number) * lanes;
   }
   /// Bit l is set where lane l has a pair in slot k.
   std::uint8_t mask(std::int64_t k) const { return mask_[k]; }
