@@ -246,6 +246,7 @@ void Simulation<D>::prepare() {
       const Vec<D> X = s.particles.X.template vec<D>(i);
       s.particles.x.template set_vec<D>(i, X + s.initial_displacement(X));
     }
+  if (!s.particles.mirror.empty()) s.particles.mirror.positions(s.particles.x);
   s.formulation = make_formulation<D>({s.particles, s.constraints, s.loads, s.method});
   if (s.initial_velocity)
     for (Index i = 0; i < s.particles.n; ++i)

@@ -112,3 +112,15 @@ TEST_CASE_TEMPLATE("symmetry planes: the updated Lagrangian part moves as the wh
               1e-10);
       }
 }
+
+TEST_CASE("a displaced body is seen with its images before the first step") {
+  Simulation<2> s(make_cloud(box<2>({0, 0}, {1, 1}), {.dx = 0.1}),
+                  make_material<2>("neo_hookean", {.E = 1e6, .nu = 0.3, .density = 1000}),
+                  {.operators = "corrected"});
+  s.symmetry_plane(0, 0);
+  s.set_displacement([](const Vec<2>& X) { return Vec<2>(0.1 * X[0], 0); });
+  s.prepare();
+  const Mat<2> F = Vec<2>(1.1, 1).asDiagonal();
+  for (std::size_t i = 0; i < s.size(); ++i)
+    CHECK((s.deformation_gradient(i) - F).norm() < 1e-6);  // vectors in single precision
+}
