@@ -80,6 +80,13 @@ Mat<D> Formulation<D>::first_piola_kirchhoff(Index) const {
 }
 
 template <int D>
+void Formulation<D>::visit_stresses(const std::function<void(const StressSample<D>&)>&) const {
+  throw InputError(fmt::format(
+      "{} keeps no reference configuration, in which stresses could be recovered; total Lagrangian forms do",
+      method_.formulation));
+}
+
+template <int D>
 double Formulation<D>::strain_energy() const {
   throw InputError(fmt::format("{} has no stored energy", method_.formulation));
 }

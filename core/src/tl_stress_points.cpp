@@ -55,6 +55,8 @@ class TlStressPoints final : public HyperelasticForm<D> {
     return mean(i,
                 [](const Mat<D>& F, const Mat<D>& P) { return Mat<D>(P * F.transpose() / F.determinant()); });
   }
+  /// Those of the cells, at the mean of their corners.
+  void visit_stresses(const std::function<void(const StressSample<D>&)>& f) const override;
   /// That of the hourglass modes included.
   double strain_energy() const override;
 
@@ -88,6 +90,9 @@ class TlStressPoints final : public HyperelasticForm<D> {
   }
   template <class F>
   Mat<D> mean(Index i, F&& f) const;
+  /// Calls f(l, F, P) for the first `count` of the cells that `cells` holds, of strip s from j on.
+  template <class Cells, class F>
+  void with_stresses(const Strip& s, Index j, const Cells& cells, Index count, F&& f) const;
   void check_volumes() const;
   void share_out();
   double stiffest_mode(const std::vector<IsotropicStiffness>& laws);
@@ -312,30 +317,56 @@ double TlStressPoints<D>::strain_energy() const {
   return total;
 }
 
+template <int D>
+template <class Cells, class F>
+void TlStressPoints<D>::with_stresses(const Strip& s, Index j, const Cells& cells, Index count, F&& f) const {
+  Pack modes[D][cell_corners<D>], gradient[D * D];
+  Bends<D> bends;
+  load_modes<D>(s, j, Columns<D>(p_.x), modes);
+  cells.deform(modes, gradient, bends);
+  alignas(64) double block[D * D * lanes], stress[D * D * lanes];
+  for (int c = 0; c < D * D; ++c) store(block + c * lanes, gradient[c]);
+  materials_[s.material]->stress({lanes, lanes, block, stress, nullptr});
+  for (int l = 0; l < count; ++l) {
+    Mat<D> of_cell, P;
+    for (int c = 0; c < D * D; ++c) {
+      of_cell(c / D, c % D) = block[c * lanes + l];
+      P(c / D, c % D) = stress[c * lanes + l];
+    }
+    f(l, of_cell, P);
+  }
+}
+
+template <int D>
+void TlStressPoints<D>::visit_stresses(const std::function<void(const StressSample<D>&)>& f) const {
+  for (const Strip& s : cells_.strips())
+    for (Index j = 0; j < s.count; j += lanes)
+      with_cells(s, j, [&](const auto& cells) {
+        with_stresses(s, j, cells, std::min<Index>(lanes, s.count - j),
+                      [&](int l, const Mat<D>& F, const Mat<D>& P) {
+                        std::array<Index, cell_corners<D>> corners;
+                        Vec<D> centre = Vec<D>::Zero();
+                        for (std::size_t c = 0; c < corners.size(); ++c) {
+                          corners[c] = s.row[c / 2] + j + l + static_cast<Index>(c % 2);
+                          centre += p_.X.template vec<D>(corners[c]) / cell_corners<D>;
+                        }
+                        f({centre, corners, s.material, F, P});
+                      });
+      });
+}
+
 // Mean of f(F, P) over the cells of a particle, with their volumes; over their images as well where the
 // particle lies on symmetry planes.
 template <int D>
 template <class F>
 Mat<D> TlStressPoints<D>::mean(Index i, F&& f) const {
-  const Columns<D> x(p_.x);
   Mat<D> sum = Mat<D>::Zero();
   double volume = 0;
   cells_.for_cells_of(i, [&](const Strip& s, Index j) {
     with_cells(s, j, [&](const auto& cells) {
-      Pack modes[D][cell_corners<D>], gradient[D * D];
-      Bends<D> bends;
-      load_modes<D>(s, j, x, modes);
-      cells.deform(modes, gradient, bends);
-      alignas(64) double block[D * D * lanes], stress[D * D * lanes];
-      for (int c = 0; c < D * D; ++c) store(block + c * lanes, gradient[c]);
-      materials_[s.material]->stress({lanes, lanes, block, stress, nullptr});
-      Mat<D> of_cell, P;
-      for (int c = 0; c < D * D; ++c) {
-        of_cell(c / D, c % D) = block[c * lanes];
-        P(c / D, c % D) = stress[c * lanes];
-      }
       const double V = share(s, j)[0] * cells.volume()[0];
-      sum += V * f(of_cell, P);
+      with_stresses(s, j, cells, 1,
+                    [&](int, const Mat<D>& of_cell, const Mat<D>& P) { sum += V * f(of_cell, P); });
       volume += V;
     });
   });

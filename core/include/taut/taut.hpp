@@ -7,4 +7,5 @@
 #include <taut/core/kernel.hpp>
 #include <taut/core/method.hpp>
 #include <taut/core/simulation.hpp>
+#include <taut/core/stress_recovery.hpp>
 #include <taut/materials/material.hpp>

@@ -2,8 +2,10 @@
 /// \file
 /// What a formulation is to the rest of taut, and the registry of formulations.
 
+#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <taut/boundary/constraints.hpp>
@@ -19,6 +21,15 @@ namespace taut {
 struct Failure {
   std::string what;
   Index particle = 0;
+};
+
+/// A stress that a formulation has of its own, as total Lagrangian forms do.
+template <int D>
+struct StressSample {
+  Vec<D> X;                          ///< where, in the reference configuration [m]
+  std::span<const Index> particles;  ///< the one it stands on, or the corners of the cell it stands in
+  std::uint8_t material;             ///< which of the particles' materials it is of
+  Mat<D> F, P;                       ///< deformation gradient, first Piola-Kirchhoff stress [Pa]
 };
 
 /// What every formulation gets: it keeps references, so all must outlive it.
@@ -53,6 +64,9 @@ class Formulation : public Dynamics {
   /// \throws InputError where the formulation has no reference configuration.
   virtual Mat<D> deformation_gradient(Index i) const;
   virtual Mat<D> first_piola_kirchhoff(Index i) const;
+  /// Calls f with all stresses of the present state, in an order that never changes: what output is smoothed
+  /// from. \throws InputError where the formulation has no reference configuration.
+  virtual void visit_stresses(const std::function<void(const StressSample<D>&)>& f) const;
   /// Of the modelled part of the body [J].
   virtual double strain_energy() const;
   virtual std::int64_t pairs() const = 0;

@@ -68,6 +68,9 @@ using History = std::function<double(double t)>;
 template <int D>
 struct SimulationImpl;
 
+template <int D>
+class StressRecovery;
+
 /// One or more bodies under one method. Everything is set before the first `run` or `relax`; set-up
 /// (ordering, pair lists, operators) happens then, or when `prepare` is called.
 template <int D>
@@ -134,6 +137,7 @@ class Simulation {
   const Method& method() const;
 
  private:
+  friend class StressRecovery<D>;
   std::unique_ptr<SimulationImpl<D>> impl_;
 };
 

@@ -39,8 +39,26 @@ class TotalLagrangian : public HyperelasticForm<D> {
     return value;
   }
   Mat<D> first_piola_kirchhoff(Index i) const override {
-    std::array<double, D * D * lanes> block{};
+    return stress(i, deformation_gradient(i));
+  }
+  Mat<D> cauchy_stress(Index i) const override {
     const Mat<D> F = deformation_gradient(i);
+    return stress(i, F) * F.transpose() / F.determinant();
+  }
+  void visit_stresses(const std::function<void(const StressSample<D>&)>& f) const override {
+    for (Index i = 0; i < p_.n; ++i) {
+      const Mat<D> F = deformation_gradient(i);
+      f({p_.X.template vec<D>(i), {&i, 1}, p_.material[static_cast<std::size_t>(i)], F, stress(i, F)});
+    }
+  }
+
+  std::int64_t pairs() const override { return pairs_.pairs(); }
+  std::size_t bytes() const override { return pairs_.bytes() + op_.bytes() + Q_.bytes(); }
+
+ protected:
+  /// P of particle i where its deformation gradient is F.
+  Mat<D> stress(Index i, const Mat<D>& F) const {
+    std::array<double, D * D * lanes> block{};
     for (int c = 0; c < D * D; ++c)
       for (int l = 0; l < lanes; ++l) block[static_cast<std::size_t>(c * lanes + l)] = F(c / D, c % D);
     materials_[p_.material[static_cast<std::size_t>(i)]]->stress(
@@ -49,15 +67,6 @@ class TotalLagrangian : public HyperelasticForm<D> {
     for (int c = 0; c < D * D; ++c) P(c / D, c % D) = block[static_cast<std::size_t>(c * lanes)];
     return P;
   }
-  Mat<D> cauchy_stress(Index i) const override {
-    const Mat<D> F = deformation_gradient(i);
-    return first_piola_kirchhoff(i) * F.transpose() / F.determinant();
-  }
-
-  std::int64_t pairs() const override { return pairs_.pairs(); }
-  std::size_t bytes() const override { return pairs_.bytes() + op_.bytes() + Q_.bytes(); }
-
- protected:
   /// F of slice s, outside the step's loops.
   void gradient(Index s, const Field& x, Pack (&F)[D * D]) const {
     with_payload<D>(op_, pairs_, p_.X, [&](const auto& payload) {

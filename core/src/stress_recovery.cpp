@@ -1,0 +1,120 @@
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <numeric>
+#include <taut/core/error.hpp>
+#include <taut/core/stress_recovery.hpp>
+#include <taut/internal/simulation_impl.hpp>
+#include <taut/neighbors/search.hpp>
+
+namespace taut {
+
+namespace {
+
+/// Disjoint sets of numbers, joined pair by pair.
+class Groups {
+ public:
+  explicit Groups(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), Index{0}); }
+  Index of(Index i) {
+    while (parent(i) != i) i = parent(i) = parent(parent(i));
+    return i;
+  }
+  void join(Index a, Index b) { parent(of(a)) = of(b); }
+
+ private:
+  Index& parent(Index i) { return parent_[static_cast<std::size_t>(i)]; }
+  std::vector<Index> parent_;
+};
+
+template <int D>
+struct Patches {
+  PatchPoints<D> targets, samples;
+};
+
+/// Particles and samples, in groups that the formulation couples and that are of one material.
+template <int D>
+Patches<D> find_patches(const SimulationImpl<D>& s) {
+  const Particles<D>& p = s.particles;
+  const auto material = [&](Index i) { return p.material[static_cast<std::size_t>(i)]; };
+  Patches<D> patches;
+  std::vector<std::vector<Index>> links;  // of each sample: the particles of its material that it touches
+  std::vector<Index> touched_by(static_cast<std::size_t>(p.n), no_particle);
+  bool cells = false;
+  s.formulation->visit_stresses([&](const StressSample<D>& sample) {
+    links.emplace_back();
+    for (const Index i : sample.particles) {
+      if (material(i) == sample.material) links.back().push_back(i);
+      touched_by[static_cast<std::size_t>(i)] = static_cast<Index>(links.size()) - 1;
+    }
+    cells = cells || sample.particles.size() > 1;
+    patches.samples.X.push_back(sample.X);
+  });
+  Groups groups(static_cast<std::size_t>(p.n) + links.size());
+  std::vector<bool> linked(static_cast<std::size_t>(p.n), false);
+  for (std::size_t k = 0; k < links.size(); ++k)
+    for (const Index i : links[k]) {
+      groups.join(p.n + static_cast<Index>(k), i);
+      linked[static_cast<std::size_t>(i)] = true;
+    }
+  if (!cells) {
+    const PairList pairs = find_pairs<D>(points_of<D>(p.X, p.n), s.method.support_dx * p.dx);
+    for (Index i = 0; i < p.n; ++i)
+      pairs.for_each(i, [&](Index b, std::int64_t, int) {
+        if (b < i && material(b) == material(i)) groups.join(i, b);
+      });
+  }
+  for (Index i = 0; i < p.n; ++i) {
+    patches.targets.X.push_back(p.X.template vec<D>(static_cast<std::size_t>(i)));
+    // A layer of a material that is thinner than its cells has the stress of those that hold it.
+    const bool own = linked[static_cast<std::size_t>(i)];
+    patches.targets.group.push_back(groups.of(own ? i : p.n + touched_by[static_cast<std::size_t>(i)]));
+  }
+  for (std::size_t k = 0; k < links.size(); ++k)
+    patches.samples.group.push_back(groups.of(p.n + static_cast<Index>(k)));
+  return patches;
+}
+
+template <int D>
+PatchFit<D> make_fit(const SimulationImpl<D>& s, double support_dx) {
+  if (!s.formulation) throw InputError("stress recovery: prepare, run or relax the simulation first");
+  if (!(support_dx >= 2) || support_dx > 20)
+    throw InputError(fmt::format("stress recovery: support_dx = {:g} must lie between 2 and 20", support_dx));
+  const Patches<D> patches = find_patches(s);
+  return PatchFit<D>(patches.targets, patches.samples, support_dx * s.particles.dx);
+}
+
+}  // namespace
+
+template <int D>
+StressRecovery<D>::StressRecovery(const Simulation<D>& simulation, double support_dx)
+    : simulation_(simulation.impl_.get()), fit_(make_fit(*simulation_, support_dx)) {}
+
+template <int D>
+template <class F>
+std::vector<Mat<D>> StressRecovery<D>::recover(F&& of_sample) const {
+  std::vector<Mat<D>> samples;
+  simulation_->formulation->visit_stresses(
+      [&](const StressSample<D>& sample) { samples.push_back(of_sample(sample)); });
+  const std::vector<Mat<D>> fitted = fit_(samples);
+  std::vector<Mat<D>> ordered(fitted.size());
+  for (std::size_t i = 0; i < fitted.size(); ++i)
+    ordered[static_cast<std::size_t>(simulation_->particles.id[i])] = fitted[i];
+  return ordered;
+}
+
+template <int D>
+std::vector<Mat<D>> StressRecovery<D>::first_piola_kirchhoff() const {
+  return recover([](const StressSample<D>& s) { return s.P; });
+}
+
+template <int D>
+std::vector<Mat<D>> StressRecovery<D>::cauchy_stress() const {
+  return recover([](const StressSample<D>& s) { return Mat<D>(s.P * s.F.transpose() / s.F.determinant()); });
+}
+
+template class StressRecovery<1>;
+template class StressRecovery<2>;
+template class StressRecovery<3>;
+
+}  // namespace taut
