@@ -4,6 +4,7 @@
 #include <convergence/hexahedral_fem.hpp>
 #include <convergence/run_row.hpp>
 #include <taut/core/error.hpp>
+#include <taut/core/stress_recovery.hpp>
 
 namespace taut::bench {
 namespace {
@@ -57,7 +58,7 @@ CubeRun run_cube(const CubeSpec& spec, int threads) {
   set_method(run.row, spec.method);
 
   const double quarter = SwingingCube::quarter_period();
-  double start = 0;
+  double start = spec.undeformed ? -quarter : 0;
   std::optional<Simulation<3>> simulation;
   try {
     simulation.emplace(cube_simulation(cloud, spec.method, run.row.material, start));
@@ -73,13 +74,16 @@ CubeRun run_cube(const CubeSpec& spec, int threads) {
       return run;
     }
 
+  std::optional<StressRecovery<3>> recovery;
+  if (spec.recover && run.row.material == "linear_elastic") recovery.emplace(*simulation);
   const bool rates = run.row.material == "hypoelastic";
   const auto take = [&](CubeErrorSums& sums) {
     sums.add(
         cloud, start + simulation->time(), [&](std::size_t i) { return simulation->velocity(i); },
         [&](std::size_t i) {
           return rates ? simulation->cauchy_stress(i)(0, 0) : simulation->first_piola_kirchhoff(i)(0, 0);
-        });
+        },
+        recovery ? recovery->first_piola_kirchhoff() : std::vector<Mat<3>>());
   };
   CubeErrorSums snapshot, over_quarter;
   double looking = 0;
@@ -110,10 +114,11 @@ CubeRun run_cube(const CubeSpec& spec, int threads) {
   return run;
 }
 
-CubeRun run_cube_fem(int intervals, double jitter, unsigned seed, int threads) {
-  const Cloud<3> cloud = swinging_cube_cloud(intervals, jitter, seed);
+CubeRun run_cube_fem(const CubeSpec& spec, int threads) {
+  const int intervals = spec.intervals;
+  const Cloud<3> cloud = swinging_cube_cloud(intervals, spec.jitter, spec.seed);
   CubeRun run;
-  run.row = row_of(cloud, jitter, threads);
+  run.row = row_of(cloud, spec.jitter, threads);
   run.row.formulation = "fem_hexahedra";
   const auto begin = Clock::now();
   HexahedralFem fem(cloud.X, {intervals, intervals, intervals}, SwingingCube::material());
@@ -122,11 +127,21 @@ CubeRun run_cube_fem(int intervals, double jitter, unsigned seed, int threads) {
     for (int tangential = 0; tangential < 3; ++tangential)
       if (tangential != axis) fem.fix([axis](const Vec<3>& X) { return X[axis] == 1; }, tangential);
   }
-  fem.set_displacement([](const Vec<3>& X) { return SwingingCube::displacement(X, 0); });
+  double t = spec.undeformed ? -SwingingCube::quarter_period() : 0;
+  fem.set_displacement([t](const Vec<3>& X) { return SwingingCube::displacement(X, t); });
+  fem.set_velocity([t](const Vec<3>& X) { return SwingingCube::velocity(X, t); });
+  std::optional<PatchFit<3>> fit;
+  if (spec.recover) {
+    const auto one_group = [](std::vector<Vec<3>> X) {
+      const std::size_t n = X.size();
+      return PatchPoints<3>{std::move(X), std::vector<Index>(n, 0)};
+    };
+    fit.emplace(one_group(cloud.X), one_group(fem.element_centres()),
+                StressRecovery<3>::default_support_dx * cloud.dx);
+  }
   run.row.setup_s = seconds_since(begin);
   run.row.loop_s = 0;
   run.row.steps = 0;
-  double t = 0;
   const auto advance = [&](double to, CubeErrorSums& sums) {
     const auto start = Clock::now();
     *run.row.steps += fem.run(to - t, step_of(intervals));
@@ -135,7 +150,8 @@ CubeRun run_cube_fem(int intervals, double jitter, unsigned seed, int threads) {
     const std::vector<Mat<3>> stress = fem.nodal_stress();
     sums.add(
         cloud, t, [&](std::size_t i) { return fem.velocity(i); },
-        [&](std::size_t i) { return stress[i](0, 0); });
+        [&](std::size_t i) { return stress[i](0, 0); },
+        fit ? (*fit)(fem.element_stress()) : std::vector<Mat<3>>());
   };
   CubeErrorSums snapshot, over_quarter;
   for (int k = 1; k <= instants; ++k) {

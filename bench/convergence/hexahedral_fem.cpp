@@ -69,6 +69,11 @@ void HexahedralFem::set_displacement(const std::function<Vec<3>(const Vec<3>&)>&
   for (std::size_t i = 0; i < size(); ++i) u_[i] = displacement(X_[i]);
 }
 
+void HexahedralFem::set_velocity(const std::function<Vec<3>(const Vec<3>&)>& velocity) {
+  for (std::size_t i = 0; i < size(); ++i)
+    for (int d = 0; d < 3; ++d) v_[i][d] = fixed_[i][static_cast<std::size_t>(d)] ? 0 : velocity(X_[i])[d];
+}
+
 Mat<3> HexahedralFem::stress(const Element& e, std::size_t gauss) const {
   Mat<3> gradient = Mat<3>::Zero();
   for (std::size_t c = 0; c < 8; ++c)
@@ -117,6 +122,26 @@ std::vector<Mat<3>> HexahedralFem::nodal_stress() const {
     }
   for (std::size_t i = 0; i < size(); ++i) sum[i] *= material_.density / mass_[i];
   return sum;
+}
+
+std::vector<Mat<3>> HexahedralFem::element_stress() const {
+  std::vector<Mat<3>> mean;
+  for (const Element& e : elements_) {
+    Mat<3> sum = Mat<3>::Zero();
+    double volume = 0;
+    for (std::size_t q = 0; q < 8; ++q) sum += e.volume[q] * stress(e, q), volume += e.volume[q];
+    mean.push_back(sum / volume);
+  }
+  return mean;
+}
+
+std::vector<Vec<3>> HexahedralFem::element_centres() const {
+  std::vector<Vec<3>> centres;
+  for (const Element& e : elements_) {
+    centres.push_back(Vec<3>::Zero());
+    for (const Index node : e.node) centres.back() += X_[static_cast<std::size_t>(node)] / 8;
+  }
+  return centres;
 }
 
 }  // namespace taut::bench

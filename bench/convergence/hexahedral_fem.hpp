@@ -23,6 +23,7 @@ class HexahedralFem {
   /// Holds component `axis` of the displacement of the selected nodes at zero.
   void fix(const std::function<bool(const Vec<3>& X)>& where, int axis);
   void set_displacement(const std::function<Vec<3>(const Vec<3>& X)>& displacement);
+  void set_velocity(const std::function<Vec<3>(const Vec<3>& X)>& velocity);
 
   /// Advances by `duration` [s] in equal steps no longer than `max_step`, from velocities at full steps to
   /// the same. Returns the number of steps.
@@ -36,6 +37,10 @@ class HexahedralFem {
   std::vector<Vec<3>> internal_forces() const;
   /// Stress at the nodes [Pa]: that of the Gauss points, averaged with shape functions and volumes.
   std::vector<Mat<3>> nodal_stress() const;
+  /// Stress of each element [Pa]: the mean of its Gauss points, by their volumes.
+  std::vector<Mat<3>> element_stress() const;
+  /// The means of the elements' corners.
+  std::vector<Vec<3>> element_centres() const;
 
  private:
   struct Element {

@@ -74,7 +74,8 @@ void hold_swinging_cube(Simulation<3>& simulation) {
 }
 
 void CubeErrorSums::add(const Cloud<3>& cloud, double t, const std::function<Vec<3>(std::size_t)>& velocity,
-                        const std::function<double(std::size_t)>& stress_xx) {
+                        const std::function<double(std::size_t)>& stress_xx,
+                        const std::vector<Mat<3>>& recovered) {
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Vec<3> exact_v = SwingingCube::velocity(cloud.X[i], t);
     const double exact_s = SwingingCube::stress(cloud.X[i], t)(0, 0);
@@ -82,9 +83,14 @@ void CubeErrorSums::add(const Cloud<3>& cloud, double t, const std::function<Vec
     v_ += cloud.V[i] * exact_v.squaredNorm();
     ds_ += cloud.V[i] * std::pow(stress_xx(i) - exact_s, 2);
     s_ += cloud.V[i] * exact_s * exact_s;
+    if (!recovered.empty()) dr_ = dr_.value_or(0) + cloud.V[i] * std::pow(recovered[i](0, 0) - exact_s, 2);
   }
 }
 
-CubeErrors CubeErrorSums::errors() const { return {std::sqrt(dv_ / v_), std::sqrt(ds_ / s_)}; }
+CubeErrors CubeErrorSums::errors() const {
+  CubeErrors errors{std::sqrt(dv_ / v_), std::sqrt(ds_ / s_), {}};
+  if (dr_) errors.recovered = std::sqrt(*dr_ / s_);
+  return errors;
+}
 
 }  // namespace taut::bench

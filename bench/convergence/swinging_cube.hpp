@@ -3,7 +3,10 @@
 /// The swinging cube: free vibration of a linear elastic unit cube, known exactly (Lee, Gil and Bonet 2016;
 /// case A6).
 
+#include <functional>
+#include <optional>
 #include <taut/core/simulation.hpp>
+#include <vector>
 
 namespace taut::bench {
 
@@ -36,19 +39,22 @@ void hold_swinging_cube(Simulation<3>& simulation);
 /// |y_exact|^2).
 struct CubeErrors {
   double velocity = 0;
-  double stress = 0;  ///< of the component P_xX
+  double stress = 0;                ///< of the component P_xX
+  std::optional<double> recovered;  ///< the same of the stress that is recovered for output
 };
 
 /// Gathers those sums at one time or, for an error over a time, at several: sums over particles and times.
 class CubeErrorSums {
  public:
-  /// `velocity(i)` and `stress_xx(i)` of the cloud's particle i at the cube's time `t`.
+  /// `velocity(i)` and `stress_xx(i)` of the cloud's particle i at the cube's time `t`, and the stress that
+  /// is recovered, or nothing.
   void add(const Cloud<3>& cloud, double t, const std::function<Vec<3>(std::size_t)>& velocity,
-           const std::function<double(std::size_t)>& stress_xx);
+           const std::function<double(std::size_t)>& stress_xx, const std::vector<Mat<3>>& recovered);
   CubeErrors errors() const;
 
  private:
   double dv_ = 0, v_ = 0, ds_ = 0, s_ = 0;
+  std::optional<double> dr_;
 };
 
 }  // namespace taut::bench

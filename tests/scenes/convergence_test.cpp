@@ -177,7 +177,7 @@ TEST_CASE(
   const auto order = [](double coarse, double fine) {
     return order_between(1.0 / 6, coarse, 1.0 / 12, fine);
   };
-  const CubeErrors fem6 = *run_cube_fem(6, 0, 1, 1).quarter, fem12 = *run_cube_fem(12, 0, 1, 1).quarter;
+  const CubeErrors fem6 = *run_cube_fem({{}, 6}, 1).quarter, fem12 = *run_cube_fem({{}, 12}, 1).quarter;
   CHECK(order(fem6.velocity, fem12.velocity) == doctest::Approx(2).epsilon(0.1));
   CHECK(order(fem6.stress, fem12.stress) > 1.3);
   const CubeErrors coarse = errors("compatible", 6), fine = errors("compatible", 12);
@@ -187,6 +187,40 @@ TEST_CASE(
   CHECK(fine.velocity < 2 * fem12.velocity);
   CHECK(fine.stress < fem12.stress);
   CHECK(errors("standard", 12).velocity > 0.5);
+}
+
+TEST_CASE("swinging cube: started from the undeformed state, compatible stresses are of second order") {
+  const auto stress = [](int intervals) {
+    Method m;
+    m.operators = "compatible";
+    CubeSpec spec{m, intervals};
+    spec.undeformed = true;
+    const CubeRun run = run_cube(spec, 1);
+    REQUIRE(run.quarter);
+    CHECK(*run.row.time == doctest::Approx(2 * SwingingCube::quarter_period()));
+    CHECK(!run.quarter->recovered);
+    return run.quarter->stress;
+  };
+  CHECK(order_between(1.0 / 6, stress(6), 1.0 / 12, stress(12)) > 1.8);
+}
+
+TEST_CASE("swinging cube: recovered stresses of cells are of second order where those of particles are not") {
+  const auto errors = [](bool fem, int intervals) {
+    Method m;
+    m.formulation = "tl_stress_points";
+    CubeSpec spec{m, intervals};
+    spec.recover = true;
+    const CubeRun run = fem ? run_cube_fem(spec, 1) : run_cube(spec, 1);
+    REQUIRE(run.quarter);
+    REQUIRE(run.quarter->recovered);
+    return *run.quarter;
+  };
+  for (const bool fem : {false, true}) {
+    const CubeErrors coarse = errors(fem, 6), fine = errors(fem, 12);
+    CHECK(order_between(1.0 / 6, coarse.stress, 1.0 / 12, fine.stress) < 1.6);
+    CHECK(order_between(1.0 / 6, *coarse.recovered, 1.0 / 12, *fine.recovered) > 1.9);
+    CHECK(*fine.recovered < 0.3 * fine.stress);
+  }
 }
 
 TEST_CASE(
