@@ -149,9 +149,12 @@ std::string script_of(const Chart& chart) {
     out += fmt::format("set label 'broke:' at graph 0.01, graph {} font ',11' textcolor rgb '#666666'\n",
                        0.05 + 0.05 * broken);
 
-  for (const ChartLabel& label : chart.labels)
-    out += fmt::format("set label {} at {},{} left offset 0.8,0.1 font ',11' textcolor rgb '#333333' front\n",
-                       quoted(label.text), label.x, label.y);
+  double up = 0.45;  // above and below by turns: neighbours are less in each other's way
+  for (const ChartLabel& label : chart.labels) {
+    out += fmt::format("set label {} at {},{} left offset 0.8,{} font ',11' textcolor rgb '#333333' front\n",
+                       quoted(label.text), label.x, label.y, up);
+    up = -up;
+  }
 
   std::string plots;
   int row = 0, block = 0, bar = 0;
