@@ -103,7 +103,7 @@ int legend_rows(const Chart& chart) {
     longest = std::max(longest, s.label.size());
     ++entries;
   }
-  const int room = static_cast<int>(chart_width / (7 * longest + 60));
+  const int room = static_cast<int>(chart_width / (17 * longest / 2 + 70));
   const int columns = entries < 4 ? 1 : std::clamp(room, 1, 4);
   return (entries + columns - 1) / columns;
 }
