@@ -157,8 +157,10 @@ class CubeStudy {
       std::array<std::vector<std::optional<double>>, kinds> errors;
       Row last;
       for (unsigned seed = 1; seed <= (jittered ? static_cast<unsigned>(seeds_) : 1u); ++seed) {
+        // Fits take longer than the coarse runs of the quick form.
+        const bool recover = !options_.common.quick || !method.zero_energy_control;
         const CubeRun one =
-            run(CubeSpec{method, intervals, jittered ? jitter : 0, seed, variant.undeformed, true});
+            run(CubeSpec{method, intervals, jittered ? jitter : 0, seed, variant.undeformed, recover});
         last = one.row;
         const auto found = errors_of(one);
         for (std::size_t k = 0; k < kinds; ++k) {

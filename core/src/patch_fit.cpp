@@ -64,7 +64,8 @@ typename PatchFit<D>::Terms PatchFit<D>::monomials(const Vec<D>& distance) const
 template <int D>
 double PatchFit<D>::weight(const Vec<D>& distance) const {
   const double q = distance.norm() / radius_;
-  return q < 1 ? std::pow(1 - q, 4) * (1 + 4 * q) : 0;
+  const double square = (1 - q) * (1 - q);
+  return q < 1 ? square * square * (1 + 4 * q) : 0;
 }
 
 /// z with sum_b w_b (z . m_b) f_b = f(target) for all f of the monomials m that the patch determines.
