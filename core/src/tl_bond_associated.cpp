@@ -41,8 +41,8 @@ class TlBondAssociated final : public TotalLagrangian<D> {
     if (setup.method.zero_energy_control > 0)
       throw InputError("tl_bond_associated has no zero-energy modes: zero_energy_control must be 0");
     share_volumes();
-    this->frequency_ = highest_frequency<D>(
-        materials_, [this](const std::vector<IsotropicStiffness>& laws) { return stiffest_mode(laws); });
+    this->frequency_ =
+        highest_frequency<D>(materials_, [this](const LawsAtRest& laws) { return stiffest_mode(laws); });
   }
 
   void update_accelerations(double t) override {
@@ -91,7 +91,7 @@ class TlBondAssociated final : public TotalLagrangian<D> {
   void force_pass(const Payload& payload);
   template <class Stresses>
   Seen accelerations(const Columns<D>& x, bool offset, const Stresses& stresses);
-  double stiffest_mode(const std::vector<IsotropicStiffness>& laws);
+  double stiffest_mode(const LawsAtRest& laws);
 
   Field F_;
   Field share_;  ///< for each material V_a / n_a of its particles, zero of others
@@ -309,21 +309,12 @@ double TlBondAssociated<D>::strain_energy() const {
 
 // Largest eigenvalue of M^-1 K of the body at rest.
 template <int D>
-double TlBondAssociated<D>::stiffest_mode(const std::vector<IsotropicStiffness>& laws) {
-  // Stresses of opposite sign, so that what is left in the accelerations is M^-1 K y.
+double TlBondAssociated<D>::stiffest_mode(const LawsAtRest& laws) {
   const auto stresses = [&laws](std::size_t m, int n, const double* H, double* P) {
-    const IsotropicStiffness& law = laws[m];
-    for (int i = 0; i < n; ++i) {
-      double h[D][D], trace = 0;
-      for (int d = 0; d < D; ++d) {
-        for (int e = 0; e < D; ++e) h[d][e] = H[(d * D + e) * chunk + i];
-        trace += h[d][d];
-      }
-      for (int d = 0; d < D; ++d)
-        for (int e = 0; e < D; ++e)
-          P[(d * D + e) * chunk + i] =
-              -(law.gradient * h[d][e] + law.transpose * h[e][d] + (d == e ? law.trace * trace : 0));
-    }
+    // Of opposite sign, so that what is left in the accelerations is M^-1 K y.
+    const auto& law = laws[m];
+    const IsotropicStiffness<double> opposite{-law.trace, -law.gradient, -law.transpose};
+    opposite.template stress<D>({n, chunk, H, P, nullptr});
   };
   const double eigenvalue = largest_eigenvalue<D>(p_.n, p_.total, p_.m, p_.a, [&](Field& y) {
     if (!p_.mirror.empty()) p_.mirror.vectors(y);

@@ -29,8 +29,8 @@ class TlDisplacement final : public TotalLagrangian<D> {
   explicit TlDisplacement(const FormulationSetup<D>& setup) : Base(setup) {
     if (const double control = setup.method.zero_energy_control.value_or(0); control > 0)
       control_.emplace(p_, pairs_, this->kernel_, this->h_, control);
-    this->frequency_ = highest_frequency<D>(
-        materials_, [this](const std::vector<IsotropicStiffness>& laws) { return stiffest_mode(laws); });
+    this->frequency_ =
+        highest_frequency<D>(materials_, [this](const LawsAtRest& laws) { return stiffest_mode(laws); });
   }
 
   void update_accelerations(double) override;
@@ -49,7 +49,7 @@ class TlDisplacement final : public TotalLagrangian<D> {
   void gradient_pass(const Payload& payload);
   template <class Payload>
   void force_pass(const Payload& payload);
-  double stiffest_mode(const std::vector<IsotropicStiffness>& laws);
+  double stiffest_mode(const LawsAtRest& laws);
 
   std::optional<ZeroEnergyControl<D>> control_;
 };
@@ -188,10 +188,10 @@ double TlDisplacement<D>::strain_energy() const {
 // Largest eigenvalue of M^-1 K of the body at rest. The control's own stiffness, which does not depend on the
 // state, is in it.
 template <int D>
-double TlDisplacement<D>::stiffest_mode(const std::vector<IsotropicStiffness>& laws) {
+double TlDisplacement<D>::stiffest_mode(const LawsAtRest& laws) {
   Field stiffness(static_cast<std::size_t>(p_.total), 3);  // times V; zero in the padding
   for (Index i = 0; i < p_.n; ++i) {
-    const IsotropicStiffness& law = laws[p_.material[static_cast<std::size_t>(i)]];
+    const auto& law = laws[p_.material[static_cast<std::size_t>(i)]];
     const double V = p_.V.component(0)[i];
     stiffness.component(0)[i] = V * law.trace;
     stiffness.component(1)[i] = V * law.gradient;
@@ -206,19 +206,15 @@ double TlDisplacement<D>::stiffest_mode(const std::vector<IsotropicStiffness>& l
 #pragma omp parallel for schedule(static) if (p_.n > parallel_from)
       for (Index s = 0; s < groups_.slices(); ++s) {
         const SliceCoefficients<D> of(op_, s);
-        Pack H[D * D];
+        Pack H[D * D], P[D * D];
         gradient_of_slice<D>(s, pairs_, payload, yc, of, H);
-        const Pack gradient = load(stiffness.component(1) + s * lanes);
-        const Pack transpose = load(stiffness.component(2) + s * lanes);
-        Pack pressure = H[0];
-        for (int d = 1; d < D; ++d) pressure += H[d * D + d];
-        pressure *= load(stiffness.component(0) + s * lanes);
-        for (int d = 0; d < D; ++d) {
-          Pack row[D];
-          for (int e = 0; e < D; ++e) row[e] = gradient * H[d * D + e] + transpose * H[e * D + d];
-          row[d] += pressure;
-          for (int e = 0; e < D; ++e) store(Q_.component(d * D + e) + s * lanes, of.times_matrix(row, e));
-        }
+        const IsotropicStiffness<Pack> law{load(stiffness.component(0) + s * lanes),
+                                           load(stiffness.component(1) + s * lanes),
+                                           load(stiffness.component(2) + s * lanes)};
+        law.template stress<D>(H, P);
+        for (int d = 0; d < D; ++d)
+          for (int e = 0; e < D; ++e)
+            store(Q_.component(d * D + e) + s * lanes, of.times_matrix(P + d * D, e));
         if (control_) {
           control_->keep(s, H);
           control_->add_stress(s, yc, of, Q_);

@@ -95,7 +95,7 @@ class TlStressPoints final : public HyperelasticForm<D> {
   void with_stresses(const Strip& s, Index j, const Cells& cells, Index count, F&& f) const;
   void check_volumes() const;
   void share_out();
-  double stiffest_mode(const std::vector<IsotropicStiffness>& laws);
+  double stiffest_mode(const LawsAtRest& laws);
 
   std::vector<double> stiffness_;  // of the first hourglass mode, over sum |b_m|^2 / V, of each material
   CellStrips<D> cells_;
@@ -125,8 +125,8 @@ TlStressPoints<D>::TlStressPoints(const FormulationSetup<D>& setup) : Base(setup
   // Cells end at symmetry planes, and so does the mass that they move.
   for (Index i = 0; i < p_.n; ++i)
     per_mass_.component(0)[i] = 1 / (p_.m.component(0)[i] * p_.modelled_share(i));
-  this->frequency_ = highest_frequency<D>(
-      materials_, [this](const std::vector<IsotropicStiffness>& laws) { return stiffest_mode(laws); });
+  this->frequency_ =
+      highest_frequency<D>(materials_, [this](const LawsAtRest& laws) { return stiffest_mode(laws); });
 }
 
 template <int D>
@@ -168,23 +168,11 @@ struct TlStressPoints<D>::ElasticLaw {
 
 template <int D>
 struct TlStressPoints<D>::LawAtRest {
-  const std::vector<IsotropicStiffness>& laws;  // one a material
+  const LawsAtRest& laws;
 
   TAUT_INLINE void see(const Strip&, Index, const Pack (&)[D * D]) {}
   void stress(const Strip& s, const StressBlock<D>& block) const {
-    const IsotropicStiffness& law = laws[s.material];
-    for (int i = 0; i < block.n; i += lanes) {
-      const auto at = [&](int d, int e) { return (d * D + e) * block.stride + static_cast<std::size_t>(i); };
-      Pack H[D][D], trace = pack(0);
-      for (int d = 0; d < D; ++d) {
-        for (int e = 0; e < D; ++e) H[d][e] = load(block.F + at(d, e));
-        trace += H[d][d];
-      }
-      for (int d = 0; d < D; ++d)
-        for (int e = 0; e < D; ++e)
-          store(block.P + at(d, e),
-                law.gradient * H[d][e] + law.transpose * H[e][d] + (d == e ? law.trace * trace : pack(0)));
-    }
+    laws[s.material].template stress<D>(block);
   }
 };
 
@@ -381,7 +369,7 @@ Mat<D> TlStressPoints<D>::mean(Index i, F&& f) const {
 
 // Largest eigenvalue of M^-1 K of the body at rest, hourglass modes included.
 template <int D>
-double TlStressPoints<D>::stiffest_mode(const std::vector<IsotropicStiffness>& laws) {
+double TlStressPoints<D>::stiffest_mode(const LawsAtRest& laws) {
   share_out();
   const auto apply = [&](const Field& y) {
 #pragma omp parallel for schedule(static, 1) if (parts_.size() > 1)
