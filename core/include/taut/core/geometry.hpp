@@ -47,12 +47,23 @@ Shape<3> cylinder(const Vec<3>& from, const Vec<3>& to, double radius);
 template <int D>
 Shape<D> implicit(std::function<double(const Vec<D>&)> f, const Vec<D>& min, const Vec<D>& max);
 
+/// A piece of a body's boundary, flat or nearly so.
+template <int D>
+struct Facet {
+  Vec<D> centre;    ///< where a linear field has its mean over the piece [m]
+  Vec<D> area;      ///< outward area vector [m^(D-1)]
+  Index owner = 0;  ///< the particle whose part of the body ends there
+};
+
 /// Particles of a body in its reference configuration, in the order of their making (the user's ids).
 template <int D>
 struct Cloud {
   std::vector<Vec<D>> X;  ///< reference positions [m]
   std::vector<double> V;  ///< reference volumes [m^D]
   std::vector<Vec<D>> B;  ///< outward boundary area vectors [m^(D-1)], zero inside; may be empty when unknown
+  /// Pieces of the boundary where it does not pass through the particles: sum A = 0 and sum x_f (x) A_f =
+  /// (sum V) I. Empty where area vectors on the particles say it all, or nothing is known.
+  std::vector<Facet<D>> facets;
   std::vector<char>
       extra;      ///< 1 for particles of added layers (`LatticeOptions::layers`); empty when there are none
   /// Cells between particles, for formulations that keep stress on cells: their corners, bit d of a corner's
