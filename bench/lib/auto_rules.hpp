@@ -15,6 +15,7 @@ struct AutoFacts {
   bool from_file = false;       ///< the particles come from a CSV file
   bool box = false;             ///< the body is a box, whose faces a lattice meets
   bool jittered = false;        ///< particles are off the places of the lattice
+  bool inside = false;          ///< particles lie inside of the surface: cell-centred lattices, centroids from a file
   bool cells = false;           ///< a node-centred lattice, jittered or not: its cells can carry the stress
   bool asks_for_pairs = false;  ///< the run gives operators, a kernel or another key that means pairs
   bool free_thickness = false;  ///< plane stress: volume may change out of plane; 1D: there is no other way

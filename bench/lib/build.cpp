@@ -1,6 +1,7 @@
 #include <lib/build.hpp>
 #include <lib/scene_parts.hpp>
 #include <limits>
+#include <taut/core/operators.hpp>
 
 namespace taut::bench {
 namespace {
@@ -40,19 +41,25 @@ template <int D>
 struct Bounds {
   Vec<D> min, max;
   double tolerance = 0;
+  double condition_tolerance = 0;  // of what conditions select: facets lie on the faces themselves
 };
 
 template <int D>
 Bounds<D> bounds_of(const Scene& scene, const RunSpec& run, const SweepPoint& point, const Cloud<D>& cloud) {
   Bounds<D> bounds;
+  const bool facets = needs_areas(run.method.operators) && !cloud.facets.empty();
   if (scene.geometry.type == "csv") {
     bounds.min.setConstant(std::numeric_limits<double>::max());
     bounds.max = -bounds.min;
-    for (const Vec<D>& X : cloud.X) {
+    const auto include = [&](const Vec<D>& X) {
       bounds.min = bounds.min.cwiseMin(X);
       bounds.max = bounds.max.cwiseMax(X);
-    }
+    };
+    for (const Vec<D>& X : cloud.X) include(X);
+    if (facets)
+      for (const Facet<D>& facet : cloud.facets) include(facet.centre);
     bounds.tolerance = 0.25 * cloud.dx;
+    bounds.condition_tolerance = facets ? 1e-3 * cloud.dx : bounds.tolerance;
     return bounds;
   }
   const Shape<D> shape = make_shape<D>(scene.geometry);
@@ -61,6 +68,7 @@ Bounds<D> bounds_of(const Scene& scene, const RunSpec& run, const SweepPoint& po
   // Cell-centred particles of a face lie half a cell inside it, and cells are no wider than 1.5 dx.
   const LatticeSpec lattice = lattice_of(run, point);
   bounds.tolerance = (lattice.kind == Lattice::cell_centred ? 0.75 : 1e-6) * lattice.dx;
+  bounds.condition_tolerance = facets ? 1e-3 * cloud.dx : bounds.tolerance;
   return bounds;
 }
 
@@ -85,8 +93,9 @@ History history_of(const BoundarySpec& boundary) {
 }
 
 template <int D>
-void apply(Simulation<D>& simulation, const BoundarySpec& boundary, const Bounds<D>& bounds,
-           const RunSpec& run, const SweepPoint& point) {
+void apply(Simulation<D>& simulation, const BoundarySpec& boundary, Bounds<D> bounds, const RunSpec& run,
+           const SweepPoint& point) {
+  bounds.tolerance = bounds.condition_tolerance;
   const bool layers = boundary.layers > 0 && run.lattice.kind == Lattice::cell_centred;
   const Where<D> where = where_of(boundary.selection, bounds, layers);
   if (boundary.type == "clamp") {
@@ -152,6 +161,30 @@ double shortest_edge(const Scene& scene) {
   if (scene.dimension == 1) return shortest_edge_of<1>(scene.geometry);
   if (scene.dimension == 2) return shortest_edge_of<2>(scene.geometry);
   return shortest_edge_of<3>(scene.geometry);
+}
+
+namespace {
+
+template <int D>
+bool lies_inside(const Scene& scene) {
+  try {
+    const Cloud<D> cloud = read_cloud<D>(scene.geometry.file);
+    double depth = 0, total = 0;  // mean depth of the particles under their facets
+    for (const Facet<D>& f : cloud.facets) {
+      depth += (f.centre - cloud.X[static_cast<std::size_t>(f.owner)]).dot(f.area);
+      total += f.area.norm();
+    }
+    return depth > 0.15 * cloud.dx * total;
+  } catch (const InputError&) {
+    return false;  // said with its place when the cloud is built
+  }
+}
+
+}  // namespace
+
+bool has_centroids(const Scene& scene) {
+  if (scene.dimension == 1) return lies_inside<1>(scene);
+  return scene.dimension == 2 ? lies_inside<2>(scene) : lies_inside<3>(scene);
 }
 
 template <int D>

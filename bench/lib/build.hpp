@@ -15,6 +15,10 @@ Cloud<D> build_cloud(const Scene& scene, const RunSpec& run, const SweepPoint& p
 template <int D>
 Simulation<D> build_simulation(const Scene& scene, const RunSpec& run, const SweepPoint& point);
 
+/// Whether the particles of the scene's file lie inside of the body's surface, as centroids of elements do; false for a file
+/// that cannot be read.
+bool has_centroids(const Scene& scene);
+
 /// Least edge of the bounding box of a body that is a shape (not a cloud from a file) [m].
 double shortest_edge(const Scene& scene);
 

@@ -95,6 +95,7 @@ Particles<D> assemble(const Cloud<D>& cloud, std::vector<std::shared_ptr<const M
   p.v = p.a = p.m_flat = Field(total, D);
   p.V = p.m = Field(total, 1);
   // Padding stands far from everything: no loop over whole packs mistakes it for a neighbour.
+  if (!cloud.spacing.empty()) p.spacing = Field(total, 1);
   std::fill(p.X.flat().begin(), p.X.flat().end(), 1e30);
   std::fill(p.m.flat().begin(), p.m.flat().end(), 1.0);
   const std::vector<double> times = multiplicity<D>(cloud, planes);
@@ -107,6 +108,7 @@ Particles<D> assemble(const Cloud<D>& cloud, std::vector<std::shared_ptr<const M
     if (!(V > 0) || !std::isfinite(V)) throw InputError(fmt::format("particle {} has volume {:g}; it must be positive", id, V));
     p.X.template set_vec<D>(i, ordered[i]);
     p.V.component(0)[i] = V;
+    if (!cloud.spacing.empty()) p.spacing.component(0)[i] = cloud.spacing[id];
     p.material[i] = material[id];
     p.m.component(0)[i] = V * p.materials[material[id]]->density();
     for (int d = 0; d < D; ++d) p.m_flat.component(d)[i] = p.m.component(0)[i];
@@ -121,16 +123,28 @@ Particles<D> assemble(const Cloud<D>& cloud, std::vector<std::shared_ptr<const M
   if (!cloud.cells.empty()) take_cells(cloud, planes, p);
   p.mirror.positions(p.X);
   p.mirror.scalars(p.V);
+  if (!p.spacing.empty()) p.mirror.scalars(p.spacing);
   p.mirror.scalars(p.m);
   p.x = p.X;
   return p;
+}
+
+template <int D>
+PairList find_pairs_at_rest(const Particles<D>& p, const Method& method) {
+  const SearchOptions options{search_method(method.neighbours)};
+  const auto points = points_of<D>(p.X, p.total);
+  if (p.spacing.empty()) return find_pairs<D>(points, method.support_dx * p.dx, options);
+  std::vector<double> radii(static_cast<std::size_t>(p.total));
+  for (std::size_t i = 0; i < radii.size(); ++i) radii[i] = method.support_dx * p.spacing.component(0)[i];
+  return find_pairs<D>(points, radii, options);
 }
 
 #define TAUT_INSTANTIATE(D)                                                                                           \
   template std::vector<double> multiplicity<D>(const Cloud<D>&, const std::vector<typename MirrorMap<D>::Plane>&); \
   template Particles<D> assemble<D>(const Cloud<D>&, std::vector<std::shared_ptr<const Material<D>>>,                 \
                                     const std::vector<std::uint8_t>&,                                                 \
-                                    const std::vector<typename MirrorMap<D>::Plane>&, double);
+                                    const std::vector<typename MirrorMap<D>::Plane>&, double);                        \
+  template PairList find_pairs_at_rest<D>(const Particles<D>&, const Method&);
 TAUT_INSTANTIATE(1)
 TAUT_INSTANTIATE(2)
 TAUT_INSTANTIATE(3)

@@ -195,6 +195,7 @@ Cloud<D> read_cloud(const std::filesystem::path& file, double dx) {
   }
   cloud.dx = dx;
   if (cloud.V.empty()) cloud.V.assign(cloud.size(), std::pow(dx, D));
+  grade_spacing(cloud);
   return cloud;
 }
 

@@ -250,6 +250,33 @@ void list_cells(const Grid<D>& grid, const std::vector<Fill>& fill, const Place<
   if (whole) cloud.cell_share = {};
 }
 
+// The faces at which the fill of cells changes, each owned by the fuller one's particle. Their moments are those of the
+// filled part of the cells: sum x_f (x) A_f = (sum V) I. `begin` counts the particles before each row of cells.
+template <int D>
+void list_facets(const Grid<D>& grid, const std::vector<Fill>& fill, const std::vector<std::int64_t>& begin,
+                 std::int64_t full, Cloud<D>& cloud) {
+  const Vec<D> area = grid.cell_volume * grid.spacing.cwiseInverse();
+  for (std::int64_t row = 0; row < Grid<D>::rows(grid.size); ++row) {
+    Place<D> at = Grid<D>::row_place(row, grid.size);
+    auto p = static_cast<std::size_t>(begin[static_cast<std::size_t>(row)]);
+    for (at[0] = 0; at[0] < grid.size[0]; ++at[0]) {
+      const std::int64_t k = grid.fill_at(at), inside = fill[static_cast<std::size_t>(k)];
+      if (inside == 0) continue;
+      for (std::size_t d = 0; d < D; ++d)
+        for (const int side : {-1, 1}) {
+          const std::int64_t excess = inside - fill[static_cast<std::size_t>(k + side * grid.stride[d])];
+          if (excess <= 0) continue;
+          const auto e = static_cast<Eigen::Index>(d);
+          Facet<D> facet{cloud.X[p], Vec<D>::Zero(), static_cast<Index>(p)};
+          facet.centre[e] = grid.coordinate(d, at[d] - grid.before[d] + (side > 0), grid.cells[d]);
+          facet.area[e] = side * area[e] * static_cast<double>(excess) / static_cast<double>(full);
+          cloud.facets.push_back(facet);
+        }
+      ++p;
+    }
+  }
+}
+
 }  // namespace
 
 template <int D>
@@ -336,6 +363,7 @@ Cloud<D> make_cloud(const Shape<D>& shape, const LatticeOptions& options) {
       ++p;
     }
   }
+  if (!nodes) list_facets<D>(grid, fill, begin, full, cloud);
   if (options.cells) list_cells<D>(grid, fill, sites, begin, full, cloud);
   return cloud;
 }

@@ -32,7 +32,9 @@ void fill_vectors(const Particles<D>& p, const PairList& pairs, const Kernel& ke
       pairs.for_each(a, [&](Index b, std::int64_t k, int lane) {
         const Vec<D> rab = p.X.template vec<D>(a) - p.X.template vec<D>(b);
         const double r = rab.norm();
-        const double slope = (w ? w[a] * w[b] : op.weight_product) * kernel.derivative(r, h) / r;
+        const double scale = p.support_scale(a, b);
+        const double weight = w ? w[a] * w[b] : op.weight_product * (scale == 1 ? 1 : std::pow(scale, 2 * D));
+        const double slope = weight * kernel.derivative(r, h * scale) / r;
         for (int d = 0; d < D; ++d)
           out[static_cast<std::size_t>((k * D + d) * lanes + lane)] = static_cast<Real>(slope * rab[d]);
       });
@@ -188,6 +190,7 @@ template <int D>
 PairPrecision resolve(const Method& method, const Particles<D>& p, const PairList& pairs, double support,
                       const Field& weights) {
   if (method.pair_precision != PairPrecision::automatic) return method.pair_precision;
+  if (!p.spacing.empty()) return PairPrecision::single_precision;
   // A slot that nothing is shared with costs twice the bytes of one in single precision.
   constexpr double worthwhile = 0.4;
   return method.operators != "quadratic" && distinct_fraction<D>(p, pairs, support, weights) < worthwhile
@@ -229,6 +232,9 @@ PairOperator<D> make_operator(const Method& method, const Particles<D>& p, const
   else
     op.weight_product = std::pow(p.dx, 2 * D);
   op.precision = resolve<D>(method, p, pairs, support, op.weight);
+  if (!p.spacing.empty() && !is_stored(op.precision))
+    throw InputError(fmt::format("the pair vectors of graded clouds cannot be {}: choose single or double",
+                                 to_string(op.precision)));
   const auto make_matrices = [&] {
     with_payload<D>(op, pairs, p.X, [&](const auto& payload) {
       fill_matrices<D>(name != "standard", p, pairs, payload, op);
@@ -236,6 +242,9 @@ PairOperator<D> make_operator(const Method& method, const Particles<D>& p, const
   };
   if (name == "quadratic") {
     require_stored(method, op.precision);
+    if (!p.spacing.empty())
+      throw InputError("quadratic operators have one support for all particles, which this cloud is too graded for: use "
+                       "compatible operators");
     make_quadratic(p, pairs, kernel, h, op);
   } else {
     fill_radial_vectors(p, pairs, kernel, h, op);

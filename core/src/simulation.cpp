@@ -42,13 +42,25 @@ void check(const Method& method) {
 }  // namespace
 
 template <int D>
-std::vector<Index> SimulationImpl<D>::select(const Where<D>& where, const char* what) const {
+std::vector<Index> SimulationImpl<D>::select_particles(const Where<D>& where, const char* what) const {
   must_be_open(what);
   std::vector<Index> ids;
   for (std::size_t i = 0; i < cloud.size(); ++i)
     if (where(cloud.X[i])) ids.push_back(static_cast<Index>(i));
-  if (ids.empty()) throw InputError(fmt::format("{} selects no particle", what));
   return ids;
+}
+template <int D>
+auto SimulationImpl<D>::select(const Where<D>& where, const char* what) const -> Selected {
+  Selected selected{select_particles(where, what), {}};
+  std::vector<char> chosen(cloud.facets.empty() ? 0 : cloud.size(), 0);
+  if (!chosen.empty())
+    for (const Index i : selected.particles) chosen[static_cast<std::size_t>(i)] = 1;
+  for (std::size_t f = 0; f < cloud.facets.size(); ++f)
+    if (!chosen[static_cast<std::size_t>(cloud.facets[f].owner)] && where(cloud.facets[f].centre))
+      selected.facets.push_back(static_cast<Index>(f));
+  if (selected.particles.empty() && selected.facets.empty())
+    throw InputError(fmt::format("{} selects no particle", what));
+  return selected;
 }
 template <int D>
 void SimulationImpl<D>::must_be_open(const char* what) const {
@@ -72,6 +84,11 @@ Simulation<D>::Simulation(Cloud<D> cloud, std::shared_ptr<const Material<D>> mat
     throw InputError(fmt::format("the cloud's spacing dx = {:g} must be positive", cloud.dx));
   if (cloud.V.size() != cloud.size())
     throw InputError(fmt::format("the cloud has {} positions but {} volumes", cloud.size(), cloud.V.size()));
+  if (!cloud.spacing.empty() && cloud.spacing.size() != cloud.size())
+    throw InputError(fmt::format("the cloud has {} positions but {} spacings", cloud.size(), cloud.spacing.size()));
+  for (const double spacing : cloud.spacing)
+    if (!(spacing > 0) || !std::isfinite(spacing))
+      throw InputError(fmt::format("the cloud's spacings must be positive; one is {:g}", spacing));
   if (!cloud.B.empty() && cloud.B.size() != cloud.size())
     throw InputError(
         fmt::format("the cloud has {} positions but {} boundary area vectors", cloud.size(), cloud.B.size()));
@@ -83,6 +100,10 @@ Simulation<D>::Simulation(Cloud<D> cloud, std::shared_ptr<const Material<D>> mat
   if (!cloud.cell_share.empty() && cloud.cell_share.size() != cloud.cells.size())
     throw InputError(fmt::format("the cloud has {} cells but {} shares of them", cloud.cells.size(),
                                  cloud.cell_share.size()));
+  for (const Facet<D>& facet : cloud.facets)
+    if (facet.owner < 0 || static_cast<std::size_t>(facet.owner) >= cloud.size())
+      throw InputError(fmt::format("the owner {} of a facet is none of the {} particles", facet.owner, cloud.size()));
+  if (!needs_areas(method.operators)) cloud.facets = {};
   impl_->material.assign(cloud.size(), 0);
   impl_->cloud = std::move(cloud);
   impl_->materials.push_back(std::move(material));
@@ -95,14 +116,16 @@ Simulation<D>::Simulation(Simulation&&) noexcept = default;
 
 template <int D>
 Where<D> Simulation<D>::face(std::string_view name) const {
-  return on_face<D>(impl_->cloud, name);
+  return impl_->cloud.facets.empty() ? on_face<D>(impl_->cloud, name) : on_facets<D>(impl_->cloud, name);
 }
 
 template <int D>
 void Simulation<D>::set_material(const Where<D>& where, std::shared_ptr<const Material<D>> material) {
   if (!material) throw InputError("set_material: no material");
   if (impl_->materials.size() == 255) throw InputError("set_material: at most 255 materials");
-  for (const Index i : impl_->select(where, "set_material"))
+  const std::vector<Index> ids = impl_->select_particles(where, "set_material");
+  if (ids.empty()) throw InputError("set_material selects no particle");
+  for (const Index i : ids)
     impl_->material[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(impl_->materials.size());
   impl_->materials.push_back(std::move(material));
 }
@@ -121,9 +144,8 @@ void Simulation<D>::set_displacement(const std::function<Vec<D>(const Vec<D>&)>&
 
 template <int D>
 void Simulation<D>::clamp(const Where<D>& where) {
-  const auto ids = impl_->select(where, "clamp");
-  impl_->conditions.push_back([impl = impl_.get(), ids] {
-    for (int d = 0; d < D; ++d) impl->constraints.fix(impl->places(ids), d);
+  impl_->conditions.push_back([impl = impl_.get(), selected = impl_->select(where, "clamp")] {
+    for (int d = 0; d < D; ++d) impl->hold(selected, d, {});
   });
 }
 
@@ -131,8 +153,8 @@ template <int D>
 void Simulation<D>::roller(const Where<D>& where, int axis) {
   if (axis < 0 || axis >= D)
     throw InputError(fmt::format("roller: axis {} is not one of 0 … {}", axis, D - 1));
-  impl_->conditions.push_back([impl = impl_.get(), axis, ids = impl_->select(where, "roller")] {
-    impl->constraints.fix(impl->places(ids), axis);
+  impl_->conditions.push_back([impl = impl_.get(), axis, selected = impl_->select(where, "roller")] {
+    impl->hold(selected, axis, {});
   });
 }
 
@@ -141,37 +163,89 @@ void Simulation<D>::prescribe(const Where<D>& where, int axis,
                               std::function<double(const Vec<D>&, double)> displacement) {
   if (axis < 0 || axis >= D)
     throw InputError(fmt::format("prescribe: axis {} is not one of 0 … {}", axis, D - 1));
-  impl_->conditions.push_back(
-      [impl = impl_.get(), axis, ids = impl_->select(where, "prescribe"), f = std::move(displacement)] {
-        impl->constraints.prescribe(impl->places(ids), axis, f);
-      });
+  impl_->conditions.push_back([impl = impl_.get(), axis, selected = impl_->select(where, "prescribe"),
+                               f = std::move(displacement)] { impl->hold(selected, axis, f); });
+}
+
+template <int D>
+void SimulationImpl<D>::hold(const Selected& selected, int axis,
+                             typename Constraints<D>::Displacement displacement) {
+  if (!selected.particles.empty()) {
+    if (displacement)
+      constraints.prescribe(places(selected.particles), axis, displacement);
+    else
+      constraints.fix(places(selected.particles), axis);
+  }
+  std::vector<BoundPoint<D>> points;
+  for (const Index f : selected.facets) {
+    BoundPoint<D> point{cloud.facets[static_cast<std::size_t>(f)].centre, {}, f};
+    for (const auto& term : facet_rows.row(static_cast<std::size_t>(f)))
+      point.terms.push_back({term.particle, (term.flips >> axis & 1) ? -term.weight : term.weight});
+    points.push_back(std::move(point));
+  }
+  if (!points.empty()) constraints.hold(std::move(points), axis, std::move(displacement));
 }
 
 template <int D>
 void Simulation<D>::load(const Where<D>& where, const Vec<D>& force, History history) {
-  const auto ids = impl_->select(where, "load");
   if (!force.allFinite()) throw InputError("load: the force is not finite");
-  impl_->conditions.push_back([impl = impl_.get(), ids, force, history = std::move(history)] {
-    impl->add_load(ids, force, history);
-  });
+  impl_->conditions.push_back([impl = impl_.get(), selected = impl_->select(where, "load"), force,
+                               history = std::move(history)] { impl->add_load(selected, force, history); });
+}
+
+namespace {
+
+// The part of each area along their mean normal; empty where that is nothing, as all around a body.
+template <int D, class Area>
+std::vector<double> facing_weights(std::size_t count, Area&& area) {
+  Vec<D> normal = Vec<D>::Zero();
+  double total = 0, sum = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    normal += area(k);
+    total += area(k).norm();
+  }
+  if (!(normal.norm() > 1e-12 * total)) return {};
+  normal.normalize();
+  std::vector<double> weight(count);
+  for (std::size_t k = 0; k < count; ++k) sum += weight[k] = std::max(0.0, normal.dot(area(k)));
+  for (double& w : weight) w /= sum;
+  return weight;
+}
+
+}  // namespace
+
+// On the facets selected and those of the particles selected; false where there are none.
+template <int D>
+bool SimulationImpl<D>::add_traction(const Selected& selected, const Vec<D>& force, const History& history) {
+  std::vector<Index> facets = selected.facets;
+  std::vector<char> chosen(cloud.size(), 0);
+  for (const Index i : selected.particles) chosen[static_cast<std::size_t>(i)] = 1;
+  for (std::size_t f = 0; f < cloud.facets.size(); ++f)
+    if (chosen[static_cast<std::size_t>(cloud.facets[f].owner)]) facets.push_back(static_cast<Index>(f));
+  const auto weight = facing_weights<D>(
+      facets.size(), [&](std::size_t k) { return cloud.facets[static_cast<std::size_t>(facets[k])].area; });
+  if (weight.empty()) return false;
+  std::vector<Index> at;
+  std::vector<Vec<D>> forces;
+  for (std::size_t k = 0; k < facets.size(); ++k)
+    if (weight[k] > 0)
+      facet_rows.spread(static_cast<std::size_t>(facets[k]), weight[k] * force, particles,
+                        [&](Index particle, const Vec<D>& part) {
+                          at.push_back(particle);
+                          forces.push_back(part);
+                        });
+  loads.add(std::move(at), std::move(forces), history);
+  return true;
 }
 
 template <int D>
-void SimulationImpl<D>::add_load(const std::vector<Index>& ids, const Vec<D>& force, History history) {
-  // Weights: the area that each particle turns towards the mean normal of the selection; even where there is
-  // none.
-  std::vector<double> weight(ids.size(), 1.0);
-  if (!cloud.B.empty()) {
-    Vec<D> normal = Vec<D>::Zero();
-    for (const Index i : ids) normal += cloud.B[static_cast<std::size_t>(i)];
-    if (normal.norm() > 1e-12 * std::pow(cloud.dx, D - 1)) {
-      normal.normalize();
-      for (std::size_t k = 0; k < ids.size(); ++k)
-        weight[k] = std::max(0.0, normal.dot(cloud.B[static_cast<std::size_t>(ids[k])]));
-    }
-  }
-  double sum = 0;
-  for (const double w : weight) sum += w;
+void SimulationImpl<D>::add_load(const Selected& selected, const Vec<D>& force, History history) {
+  if (!cloud.facets.empty() && add_traction(selected, force, history)) return;
+  const std::vector<Index>& ids = selected.particles;
+  std::vector<double> weight;
+  if (!cloud.B.empty())
+    weight = facing_weights<D>(ids.size(), [&](std::size_t k) { return cloud.B[static_cast<std::size_t>(ids[k])]; });
+  if (weight.empty()) weight.assign(ids.size(), 1.0 / static_cast<double>(ids.size()));
   // A particle on a symmetry plane carries its image's load as well.
   const auto times = multiplicity<D>(cloud, planes);
   std::vector<Index> at;
@@ -180,7 +254,7 @@ void SimulationImpl<D>::add_load(const std::vector<Index>& ids, const Vec<D>& fo
     if (weight[k] == 0) continue;
     const auto id = static_cast<std::size_t>(ids[k]);
     at.push_back(place(id));
-    forces.push_back(force * (weight[k] / sum * times[id]));
+    forces.push_back(force * (weight[k] * times[id]));
   }
   loads.add(std::move(at), std::move(forces), std::move(history));
 }
@@ -210,9 +284,11 @@ void Simulation<D>::observe(double interval, std::function<void(double)> f) {
 }
 
 namespace {
-// Boundary areas fit for operators that need them: estimated where there are none, closed where they are given.
+
+// Closed boundary areas, for operators that need them, or an error where they have to be bent too far for that.
 template <int D>
 void enclose(Cloud<D>& cloud) {
+  if (!cloud.facets.empty()) return;
   if (cloud.B.empty()) return estimate_areas(cloud);
   constexpr double tolerable = 0.2;
   const double change = close_areas(cloud);
@@ -222,7 +298,29 @@ void enclose(Cloud<D>& cloud) {
                     "volume) would change them by {:.0f} %. Check their signs and the volumes, or leave them out",
                     100 * change));
 }
+
+// The body goes on across a symmetry plane: what ends there is no boundary.
+template <int D>
+void open_facets_on(const std::vector<typename MirrorMap<D>::Plane>& planes, Cloud<D>& cloud) {
+  for (const auto& plane : planes)
+    for (Facet<D>& f : cloud.facets)
+      if ((f.centre[plane.axis] - plane.at) * (plane.side == 0 ? -1 : 1) > -1e-6 * cloud.dx) f.area.setZero();
+}
+
 }  // namespace
+
+// Facets become areas of particles, by the same weights that carry tractions and walls.
+template <int D>
+void SimulationImpl<D>::place_facets() {
+  const Kernel kernel(method.kernel, D);
+  const PairList pairs = find_pairs_at_rest(particles, method);
+  facet_rows = FacetRows<D>(cloud.facets, particles, pairs, kernel,
+                            method.support_dx * particles.dx / kernel.radius_factor());
+  particles.B.assign(cloud.size(), Vec<D>::Zero());
+  for (std::size_t f = 0; f < cloud.facets.size(); ++f)
+    facet_rows.spread(f, cloud.facets[f].area, particles,
+                      [&](Index i, const Vec<D>& part) { particles.B[static_cast<std::size_t>(i)] += part; });
+}
 
 template <int D>
 void Simulation<D>::prepare() {
@@ -230,8 +328,12 @@ void Simulation<D>::prepare() {
   const auto start = std::chrono::steady_clock::now();
   SimulationImpl<D>& s = *impl_;
   if (needs_areas(s.method.operators) && s.planes.empty()) enclose(s.cloud);
-  const double reach = s.method.support_dx * s.cloud.dx * (1 + s.method.skin);
+  open_facets_on<D>(s.planes, s.cloud);
+  const double widest =
+      s.cloud.spacing.empty() ? s.cloud.dx : *std::max_element(s.cloud.spacing.begin(), s.cloud.spacing.end());
+  const double reach = s.method.support_dx * widest * (1 + s.method.skin);
   s.particles = assemble<D>(s.cloud, s.materials, s.material, s.planes, reach);
+  if (!s.cloud.facets.empty()) s.place_facets();
   s.cloud.cells = {};  // the particles have them now
   s.cloud.cell_share = {};
   for (const auto& condition : s.conditions) condition();
@@ -241,6 +343,7 @@ void Simulation<D>::prepare() {
       if (std::abs(s.particles.X.component(plane.axis)[i] - plane.at) < 1e-6 * s.cloud.dx) on.push_back(i);
     if (!on.empty()) s.constraints.fix(std::move(on), plane.axis);
   }
+  s.constraints.finish(s.particles.m);
   if (s.initial_displacement)
     for (Index i = 0; i < s.particles.n; ++i) {
       const Vec<D> X = s.particles.X.template vec<D>(i);

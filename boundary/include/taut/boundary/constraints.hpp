@@ -2,7 +2,10 @@
 /// \file
 /// Kinematic constraints on sets of particles.
 
+#include <algorithm>
+#include <array>
 #include <functional>
+#include <taut/boundary/held_points.hpp>
 #include <taut/core/fields.hpp>
 #include <taut/core/types.hpp>
 #include <vector>
@@ -20,12 +23,17 @@ class Constraints {
   void fix(std::vector<Index> particles, int axis);
   void prescribe(std::vector<Index> particles, int axis, Displacement displacement);
 
+  /// The same for points that particles carry with them.
+  void hold(std::vector<BoundPoint<D>> points, int axis, Displacement displacement = {});
+  /// To be called when all is held, with the masses of the particles. \throws InputError as `HeldPoints::factor`.
+  void finish(const Field& mass);
+
   void apply_to_positions(double t, const Field& X, Field& x) const;
   /// Velocities of prescribed components are the central difference of their displacement.
   void apply_to_velocities(double t, const Field& X, Field& v) const;
   /// Constrained components carry no acceleration of their own, so that norms of it are out-of-balance forces.
   void apply_to_accelerations(Field& a) const;
-  bool empty() const { return sets_.empty(); }
+  bool empty() const { return sets_.empty() && std::all_of(held_.begin(), held_.end(), [](const auto& h) { return h.empty(); }); }
 
  private:
   struct Set {
@@ -34,6 +42,7 @@ class Constraints {
     Displacement displacement;  // empty: zero
   };
   std::vector<Set> sets_;
+  std::array<HeldPoints<D>, D> held_;  // along each axis
 };
 
 }  // namespace taut

@@ -28,6 +28,8 @@ class MirrorMap {
   Index size() const { return static_cast<Index>(master_.size()); }
   Index begin() const { return begin_; }
   Index master(Index k) const { return master_[k]; }
+  /// Bit d: coordinate d of image k is reflected.
+  std::uint8_t flips(Index k) const { return flips_[static_cast<std::size_t>(k)]; }
   Vec<D> image(Index k, const Vec<D>& point) const;
 
   /// Mirrors positions: x' = reflect(x).

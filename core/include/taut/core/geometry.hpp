@@ -72,12 +72,13 @@ struct Cloud {
   std::vector<std::array<Index, 1 << D>> cells;
   std::vector<double> cell_share;  ///< part of each cell that is body, 0 … 1; empty where all are whole
   double dx = 0;  ///< nominal spacing [m]
+  std::vector<double> spacing;  ///< of each particle [m], for supports that grow with it; empty where all have dx
   std::size_t size() const { return X.size(); }
 };
 
 enum class Lattice {
   node_centred,  ///< particles on the faces, tributary volumes and boundary area vectors
-  cell_centred   ///< particles at cell centres, equal volumes, no area vectors
+  cell_centred   ///< particles at cell centres, equal volumes, facets half a cell outside of the outermost
 };
 
 struct LatticeOptions {
@@ -98,7 +99,7 @@ struct LatticeOptions {
 };
 
 /// Fills a shape with a square lattice aligned with its bounding box, in lexicographic order, x fastest.
-/// Node-centred volumes and area vectors are those of the union of inside cells, so that sum B = 0 and
+/// Cell-centred lattices have facets where filled cells end. Node-centred volumes and area vectors are those of the union of inside cells, so that sum B = 0 and
 /// sum X (x) B = (sum V) I hold to round-off. Jitter moves a point only when all cells around it are inside
 /// (all cells around its own, for cell-centred ones), so that neither the faces nor the sums change; the
 /// displacements depend on the seed and the place in the lattice alone, and are the same on every machine.
@@ -109,11 +110,15 @@ struct LatticeOptions {
 template <int D>
 Cloud<D> make_cloud(const Shape<D>& shape, const LatticeOptions& options);
 
-/// Whether a reference position lies on a face of the cloud's bounding box, "x_min", "x_max", "y_min", …,
-/// within dx/4: the outermost particles of cell-centred clouds. Added layers do not count for the bounding
+/// Whether a reference position lies on a face of the bounding box of the cloud's particles, "x_min", "x_max", "y_min",
+/// …, within dx/4: the outermost particles of cell-centred clouds. Added layers do not count for the bounding
 /// box. \throws InputError for an unknown face, listing the valid ones, or an empty cloud.
 template <int D>
 std::function<bool(const Vec<D>&)> on_face(const Cloud<D>& cloud, std::string_view face);
+/// The same for the bounding box of the cloud's facets, within dx/1000: half a cell outside of the outermost particles of
+/// cell-centred clouds. \throws InputError also for a cloud without facets.
+template <int D>
+std::function<bool(const Vec<D>&)> on_facets(const Cloud<D>& cloud, std::string_view face);
 
 /// Reads particles from a CSV file with a header line. Columns x[,y[,z]] and, optionally, volume and
 /// bx[,by[,bz]] (area vectors), in any order; `#` starts a comment. Without volumes each particle gets dx^D;
@@ -122,6 +127,12 @@ std::function<bool(const Vec<D>&)> on_face(const Cloud<D>& cloud, std::string_vi
 /// positive; also for a dx that is negative or cannot be found.
 template <int D>
 Cloud<D> read_cloud(const std::filesystem::path& file, double dx = 0);
+
+/// Gives the particles of a graded cloud spacings of their own: D-th roots of the volumes around, or the distance of the
+/// D-th neighbour where that is more. Leaves `spacing` empty where they differ by less than a factor of 1.6, as in jittered
+/// clouds.
+template <int D>
+void grade_spacing(Cloud<D>& cloud);
 
 /// Changes the area vectors of surface particles by the least amount (relative to their size) that makes them
 /// enclose the cloud's volume: sum B = 0, sum X (x) B = (sum V) I. Returns the change, sum |dB| / sum |B|.

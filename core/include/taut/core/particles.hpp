@@ -2,6 +2,7 @@
 /// \file
 /// The particles of a simulation: structure of arrays, ordered for locality.
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <memory>
@@ -24,6 +25,7 @@ struct Particles {
   std::vector<Index> id;     ///< id[i]: the user's index of particle i
   std::vector<Index> place;  ///< place[id]: where the user's particle stands
   Field X, x, v, a;          ///< reference and current position, velocity, acceleration; D components
+  Field spacing;  ///< of each particle, for supports that grow with it [m]; empty where all have dx
   Field V;       ///< reference volume [m^D], its image's part included for particles on symmetry planes
   Field m;       ///< mass [kg] (per unit thickness in 2D, per unit area in 1D)
   Field m_flat;  ///< mass, repeated for each component: weights of norms; zero beyond n
@@ -37,13 +39,20 @@ struct Particles {
   std::vector<std::array<Index, 1 << D>> cells;
   std::vector<double> cell_share;
 
+  /// The support of a pair over that of particles dx apart: the larger one of the two.
+  double support_scale(Index i, Index j) const {
+    if (spacing.empty()) return 1;
+    const double* s = spacing.component(0);
+    return std::max(s[i], s[j]) / dx;
+  }
+
   /// The part of V that belongs to the modelled side of the symmetry planes.
   double modelled_share(Index i) const {
     return planes.empty() ? 1 : 1.0 / (1 << std::popcount(planes[static_cast<std::size_t>(i)]));
   }
 
   std::size_t bytes() const {
-    return X.bytes() + x.bytes() + v.bytes() + a.bytes() + V.bytes() + m.bytes() + m_flat.bytes() +
+    return X.bytes() + x.bytes() + spacing.bytes() + v.bytes() + a.bytes() + V.bytes() + m.bytes() + m_flat.bytes() +
            (id.size() + place.size()) * sizeof(Index) + B.size() * sizeof(Vec<D>) + material.size() +
            planes.size() + cells.size() * sizeof(cells[0]) + cell_share.size() * sizeof(double);
   }

@@ -81,7 +81,8 @@ class Simulation {
   ~Simulation();
   Simulation(Simulation&&) noexcept;
 
-  /// The named face of the body's bounding box: "x_min" … "z_max".
+  /// The named face of the body's bounding box: "x_min" … "z_max": its outermost particles or, where the operators act
+  /// through facets (`compatible`, `antisymmetric`) and the cloud has some, the facets there.
   Where<D> face(std::string_view name) const;
 
   /// Another material for the particles of a region (bonded to the rest).
@@ -90,7 +91,10 @@ class Simulation {
   /// Initial displacement; constraints still hold.
   void set_displacement(const std::function<Vec<D>(const Vec<D>& X)>& displacement);
 
-  // Boundary conditions and loads. Each \throws InputError when it selects no particle.
+  // Boundary conditions and loads. Each \throws InputError when it selects no particle. Conditions act on the particles
+  // that `where` selects by their reference position and, with operators that act through facets, on the facets whose
+  // centres it selects, those of selected particles aside: a wall there holds the displacement that is extrapolated to
+  // the facet, half a spacing beyond the outermost particles of a cell-centred lattice.
   void clamp(const Where<D>& where);             ///< displacement zero
   void roller(const Where<D>& where, int axis);  ///< displacement zero along one axis
   /// Displacement along `axis` follows `displacement(X, t)`.
@@ -98,7 +102,8 @@ class Simulation {
                  std::function<double(const Vec<D>& X, double t)> displacement);
   /// Dead load: `force` [N] (per unit thickness in 2D, per unit area in 1D) spread over the selected
   /// particles by their boundary area along the face normal, or evenly where areas are unknown; times
-  /// `history`.
+  /// `history`. With facets over those selected and those of selected particles, from where it is carried to the
+  /// particles by the weights of the extrapolation.
   void load(const Where<D>& where, const Vec<D>& force, History history = {});
   void body_force(const Vec<D>& acceleration, History history = {});  ///< [m/s^2]
   /// The body continues as its mirror image beyond the plane X[axis] = `at` [m], which must bound it.

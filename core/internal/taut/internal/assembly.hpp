@@ -5,8 +5,10 @@
 #include <memory>
 #include <taut/boundary/mirror.hpp>
 #include <taut/core/geometry.hpp>
+#include <taut/core/method.hpp>
 #include <taut/core/particles.hpp>
 #include <taut/materials/material.hpp>
+#include <taut/neighbors/pair_list.hpp>
 #include <vector>
 
 namespace taut {
@@ -23,5 +25,9 @@ template <int D>
 Particles<D> assemble(const Cloud<D>& cloud, std::vector<std::shared_ptr<const Material<D>>> materials,
                       const std::vector<std::uint8_t>& material, const std::vector<typename MirrorMap<D>::Plane>& planes,
                       double reach);
+
+/// The pairs of particles and their images in the reference configuration, within the supports of a method.
+template <int D>
+PairList find_pairs_at_rest(const Particles<D>& particles, const Method& method);
 
 }  // namespace taut

@@ -11,6 +11,7 @@
 #include <taut/core/simulation.hpp>
 #include <taut/integrators/integrator.hpp>
 #include <taut/integrators/step_control.hpp>
+#include <taut/internal/facet_rows.hpp>
 #include <vector>
 
 namespace taut {
@@ -32,6 +33,7 @@ struct SimulationImpl {
   std::vector<Observer> observers;
 
   Particles<D> particles;
+  FacetRows<D> facet_rows;  // of the cloud's facets, once particles are in place
   Constraints<D> constraints;
   Loads<D> loads;
   std::unique_ptr<Formulation<D>> formulation;
@@ -44,11 +46,19 @@ struct SimulationImpl {
     if (complete_velocities) complete_velocities();
   }
   Index place(std::size_t id) const { return particles.place.at(id); }
-  // Throws when a set-up call comes too late, and gives the ids that `where` selects.
-  std::vector<Index> select(const Where<D>& where, const char* what) const;
+  /// What a condition acts on: particles, and facets that none of them owns.
+  struct Selected {
+    std::vector<Index> particles, facets;
+  };
+  // Throws when a set-up call comes too late. Facets are selected by their centres.
+  Selected select(const Where<D>& where, const char* what) const;
+  std::vector<Index> select_particles(const Where<D>& where, const char* what) const;
   void must_be_open(const char* what) const;
   std::vector<Index> places(std::vector<Index> ids) const;
-  void add_load(const std::vector<Index>& ids, const Vec<D>& force, History history);
+  void hold(const Selected& selected, int axis, typename Constraints<D>::Displacement displacement);
+  void add_load(const Selected& selected, const Vec<D>& force, History history);
+  bool add_traction(const Selected& selected, const Vec<D>& force, const History& history);
+  void place_facets();
 };
 
 /// Advances by `duration` [s]; the loop of Simulation::run.

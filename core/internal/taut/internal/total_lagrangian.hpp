@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <array>
 #include <taut/core/operators.hpp>
+#include <taut/internal/assembly.hpp>
 #include <taut/internal/hyperelastic_form.hpp>
 #include <taut/internal/material_groups.hpp>
 #include <taut/internal/pair_passes.hpp>
@@ -25,8 +26,7 @@ class TotalLagrangian : public HyperelasticForm<D> {
         groups_(p_),
         kernel_(setup.method.kernel, D),
         h_(setup.method.support_dx * p_.dx / kernel_.radius_factor()) {
-    pairs_ = find_pairs<D>(points_of<D>(p_.X, p_.total), setup.method.support_dx * p_.dx,
-                           {search_method(setup.method.neighbours)});
+    pairs_ = find_pairs_at_rest(p_, setup.method);
     op_ = make_operator<D>(setup.method, p_, pairs_, kernel_, h_);
     Q_ = Field(static_cast<std::size_t>(p_.total), D * D);
   }

@@ -35,7 +35,7 @@ class ZeroEnergyControl {
           // Products that do not tell a from b, to the last bit.
           const double E = 0.5 * (modulus(a) + modulus(b)), V2 = V[a] * V[b];
           stiffness_[static_cast<std::size_t>(k * lanes + lane)] =
-              static_cast<float>(alpha * E * V2 * kernel.value(r, h) / (r * r));
+              static_cast<float>(alpha * E * V2 * kernel.value(r, h * p.support_scale(a, b)) / (r * r));
         });
   }
 

@@ -1,0 +1,99 @@
+#include <fmt/format.h>
+
+#include <Eigen/SparseCholesky>
+#include <cmath>
+#include <taut/boundary/held_points.hpp>
+#include <taut/core/error.hpp>
+#include <utility>
+
+namespace taut {
+
+template <int D>
+struct HeldPoints<D>::System {
+  Eigen::SparseMatrix<double> from_points;  // M^-1 C^T, a column a point
+  std::vector<Index> particles;             // of its rows
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors;  // of C M^-1 C^T, of unit diagonal
+  Eigen::VectorXd scale;
+};
+
+template <int D>
+HeldPoints<D>::HeldPoints() = default;
+template <int D>
+HeldPoints<D>::~HeldPoints() = default;
+template <int D>
+HeldPoints<D>::HeldPoints(HeldPoints&&) noexcept = default;
+template <int D>
+HeldPoints<D>& HeldPoints<D>::operator=(HeldPoints&&) noexcept = default;
+
+template <int D>
+void HeldPoints<D>::add(std::vector<BoundPoint<D>> points, Displacement displacement) {
+  displacements_.push_back(std::move(displacement));
+  for (BoundPoint<D>& point : points) {
+    const auto [at, is_new] = place_.try_emplace(point.number, points_.size());
+    const std::size_t k = at->second;
+    if (is_new) {
+      points_.emplace_back();
+      set_.emplace_back();
+    }
+    points_[k] = std::move(point);
+    set_[k] = displacements_.size() - 1;
+  }
+}
+
+template <int D>
+void HeldPoints<D>::factor(const Field& mass, const std::vector<char>& fixed) {
+  system_ = std::make_unique<System>();
+  row_point_.clear();
+  std::vector<Index> column(fixed.size(), no_particle);
+  std::vector<Eigen::Triplet<double>> entries;  // of C M^-1/2
+  for (std::size_t k = 0; k < points_.size(); ++k) {
+    bool free = false;
+    for (const auto& term : points_[k].terms) {
+      const auto i = static_cast<std::size_t>(term.particle);
+      if (fixed[i] || term.weight == 0) continue;
+      free = true;
+      if (column[i] == no_particle) {
+        column[i] = static_cast<Index>(system_->particles.size());
+        system_->particles.push_back(term.particle);
+      }
+      entries.emplace_back(static_cast<int>(row_point_.size()), column[i], term.weight / std::sqrt(mass.component(0)[i]));
+    }
+    if (free) row_point_.push_back(k);
+  }
+  if (row_point_.empty()) return;
+  const auto points = static_cast<Eigen::Index>(row_point_.size());
+  const auto particles = static_cast<Eigen::Index>(system_->particles.size());
+  Eigen::SparseMatrix<double> C(points, particles);
+  C.setFromTriplets(entries.begin(), entries.end());
+  Eigen::SparseMatrix<double> normal = C * C.transpose();
+  system_->scale = normal.diagonal().cwiseSqrt().cwiseInverse();
+  normal = system_->scale.asDiagonal() * normal * system_->scale.asDiagonal();
+  system_->factors.compute(normal);
+  constexpr double redundant = 1e-10;  // pivots of independent rows are of the order of 1
+  if (system_->factors.info() != Eigen::Success || !(system_->factors.vectorD().minCoeff() > redundant))
+    throw InputError(
+        fmt::format("the {} points held on the boundary do not move independently: where walls meet, or in a body one "
+                    "particle thick, they hold the same particles twice. Hold fewer of them, or refine dx there",
+                    points));
+  Eigen::VectorXd root(particles);
+  for (Eigen::Index c = 0; c < particles; ++c)
+    root[c] = 1 / std::sqrt(mass.component(0)[system_->particles[static_cast<std::size_t>(c)]]);
+  system_->from_points = root.asDiagonal() * Eigen::SparseMatrix<double>(C.transpose());
+}
+
+template <int D>
+void HeldPoints<D>::correct(const std::vector<double>& defect, double* values) const {
+  if (defect.empty()) return;
+  const Eigen::Map<const Eigen::VectorXd> right(defect.data(), static_cast<Eigen::Index>(defect.size()));
+  const Eigen::VectorXd force =
+      system_->scale.cwiseProduct(system_->factors.solve(system_->scale.cwiseProduct(right)));
+  const Eigen::VectorXd change = system_->from_points * force;
+  for (std::size_t c = 0; c < system_->particles.size(); ++c)
+    values[system_->particles[c]] += change[static_cast<Eigen::Index>(c)];
+}
+
+template class HeldPoints<1>;
+template class HeldPoints<2>;
+template class HeldPoints<3>;
+
+}  // namespace taut
