@@ -10,8 +10,8 @@ namespace taut {
 
 template <int D>
 struct HeldPoints<D>::System {
-  Eigen::SparseMatrix<double> from_points;  // M^-1 C^T, a column a point
-  std::vector<Index> particles;             // of its rows
+  Eigen::SparseMatrix<double> from_points;                     // M^-1 C^T, a column a point
+  std::vector<Index> particles;                                // of its rows
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors;  // of C M^-1 C^T, of unit diagonal
   Eigen::VectorXd scale;
 };
@@ -56,7 +56,8 @@ void HeldPoints<D>::factor(const Field& mass, const std::vector<char>& fixed) {
         column[i] = static_cast<Index>(system_->particles.size());
         system_->particles.push_back(term.particle);
       }
-      entries.emplace_back(static_cast<int>(row_point_.size()), column[i], term.weight / std::sqrt(mass.component(0)[i]));
+      entries.emplace_back(static_cast<int>(row_point_.size()), column[i],
+                           term.weight / std::sqrt(mass.component(0)[i]));
     }
     if (free) row_point_.push_back(k);
   }
@@ -71,10 +72,10 @@ void HeldPoints<D>::factor(const Field& mass, const std::vector<char>& fixed) {
   system_->factors.compute(normal);
   constexpr double redundant = 1e-10;  // pivots of independent rows are of the order of 1
   if (system_->factors.info() != Eigen::Success || !(system_->factors.vectorD().minCoeff() > redundant))
-    throw InputError(
-        fmt::format("the {} points held on the boundary do not move independently: where walls meet, or in a body one "
-                    "particle thick, they hold the same particles twice. Hold fewer of them, or refine dx there",
-                    points));
+    throw InputError(fmt::format(
+        "the {} points held on the boundary do not move independently: where walls meet, or in a body one "
+        "particle thick, they hold the same particles twice. Hold fewer of them, or refine dx there",
+        points));
   Eigen::VectorXd root(particles);
   for (Eigen::Index c = 0; c < particles; ++c)
     root[c] = 1 / std::sqrt(mass.component(0)[system_->particles[static_cast<std::size_t>(c)]]);

@@ -9,20 +9,21 @@ namespace {
 template <int D>
 Mat<D> inverse_of_spanned(const Mat<D>& moment) {
   constexpr double flat = 1e-6;
-  const Eigen::SelfAdjointEigenSolver<Mat<D>> eigen(moment);
+  using Matrix = Eigen::Matrix<double, D, D>;
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(Matrix{moment});
   const double largest = eigen.eigenvalues()[D - 1];
   Mat<D> inverse = Mat<D>::Zero();
   for (int d = 0; d < D; ++d)
     if (eigen.eigenvalues()[d] > flat * largest)
-      inverse += eigen.eigenvectors().col(d) * eigen.eigenvectors().col(d).transpose() / eigen.eigenvalues()[d];
+      inverse +=
+          eigen.eigenvectors().col(d) * eigen.eigenvectors().col(d).transpose() / eigen.eigenvalues()[d];
   return inverse;
 }
 
 }  // namespace
 
 template <int D>
-FacetRows<D>::FacetRows(const std::vector<Facet<D>>& facets, const Particles<D>& p, const PairList& pairs,
-                        const Kernel& kernel, double h) {
+FacetRows<D>::FacetRows(const std::vector<Facet<D>>& facets, const Particles<D>& p, const PairList& pairs) {
   begin_.reserve(facets.size() + 1);
   for (const Facet<D>& facet : facets) {
     const Index o = p.place[static_cast<std::size_t>(facet.owner)];
@@ -33,16 +34,14 @@ FacetRows<D>::FacetRows(const std::vector<Facet<D>>& facets, const Particles<D>&
       Mat<D> moment = Mat<D>::Zero();
       const auto each = [&](auto&& f) {
         pairs.for_each(o, [&](Index b, std::int64_t, int) {
-          const Vec<D> X = p.X.template vec<D>(static_cast<std::size_t>(b)) - Xo;
-          const double r = X.norm();
-          f(b, X, -kernel.derivative(r, h * p.support_scale(o, b)) / r);  // the weights of corrected gradients
+          f(b, Vec<D>(p.X.template vec<D>(static_cast<std::size_t>(b)) - Xo));
         });
       };
-      each([&](Index, const Vec<D>& X, double w) { moment += w * X * X.transpose(); });
+      each([&](Index, const Vec<D>& X) { moment += X * X.transpose(); });
       const Vec<D> direction = inverse_of_spanned<D>(moment) * to_facet;
       double sum = 0;
-      each([&](Index b, const Vec<D>& X, double w) {
-        const double weight = w * X.dot(direction);
+      each([&](Index b, const Vec<D>& X) {
+        const double weight = X.dot(direction);
         if (weight == 0) return;
         sum += weight;
         if (b < p.n)

@@ -12,7 +12,8 @@ namespace taut {
 
 namespace {
 
-// The plane of a face of the bounding box of `count` points, of which `point(k)` gives the owning particle and the place.
+// The plane of a face of the bounding box of `count` points, of which `point(k)` gives the owning particle
+// and the place.
 template <int D, class Point>
 std::function<bool(const Vec<D>&)> plane_of(const Cloud<D>& cloud, std::string_view face, std::size_t count,
                                             double tolerance, Point&& point) {
@@ -34,7 +35,9 @@ std::function<bool(const Vec<D>&)> plane_of(const Cloud<D>& cloud, std::string_v
     if (cloud.extra.empty() || !cloud.extra[owner]) outermost = std::max(outermost, sign * X[axis]);
   }
   if (!std::isfinite(outermost)) throw InputError(fmt::format("face {} of an empty cloud", face));
-  return [axis, at = sign * outermost, tolerance](const Vec<D>& X) { return std::abs(X[axis] - at) <= tolerance; };
+  return [axis, at = sign * outermost, tolerance](const Vec<D>& X) {
+    return std::abs(X[axis] - at) <= tolerance;
+  };
 }
 
 }  // namespace
@@ -52,8 +55,8 @@ std::function<bool(const Vec<D>&)> on_facets(const Cloud<D>& cloud, std::string_
   });
 }
 
-#define TAUT_INSTANTIATE(D)                                                                      \
-  template std::function<bool(const Vec<D>&)> on_face<D>(const Cloud<D>&, std::string_view);     \
+#define TAUT_INSTANTIATE(D)                                                                  \
+  template std::function<bool(const Vec<D>&)> on_face<D>(const Cloud<D>&, std::string_view); \
   template std::function<bool(const Vec<D>&)> on_facets<D>(const Cloud<D>&, std::string_view);
 TAUT_INSTANTIATE(1)
 TAUT_INSTANTIATE(2)

@@ -29,12 +29,14 @@ double quantile(std::vector<double> values, double q) {
 
 template <int D>
 void grade_spacing(Cloud<D>& cloud) {
-  constexpr std::size_t nearest = 2 * D + 1;  // itself and what stands around: on a face, a particle inside as well
+  constexpr std::size_t nearest =
+      2 * D + 1;                // itself and what stands around: on a face, a particle inside as well
   constexpr double even = 1.6;  // jitter makes less of a difference than this
   cloud.spacing = {};
   if (cloud.size() <= nearest) return;
   const Points<D> points{cloud.X};
-  const nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Points<D>>, Points<D>, D, std::size_t>
+  const nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Points<D>>, Points<D>, D,
+                                            std::size_t>
       tree(D, points, nanoflann::KDTreeSingleIndexAdaptorParams(10));
   std::vector<double> spacing(cloud.size());
 #pragma omp parallel for schedule(static)

@@ -312,10 +312,7 @@ void open_facets_on(const std::vector<typename MirrorMap<D>::Plane>& planes, Clo
 // Facets become areas of particles, by the same weights that carry tractions and walls.
 template <int D>
 void SimulationImpl<D>::place_facets() {
-  const Kernel kernel(method.kernel, D);
-  const PairList pairs = find_pairs_at_rest(particles, method);
-  facet_rows = FacetRows<D>(cloud.facets, particles, pairs, kernel,
-                            method.support_dx * particles.dx / kernel.radius_factor());
+  facet_rows = FacetRows<D>(cloud.facets, particles, find_pairs_at_rest(particles, method));
   particles.B.assign(cloud.size(), Vec<D>::Zero());
   for (std::size_t f = 0; f < cloud.facets.size(); ++f)
     facet_rows.spread(f, cloud.facets[f].area, particles,

@@ -89,6 +89,15 @@ TEST_CASE_TEMPLATE("symmetry planes: the total Lagrangian part moves as the whol
             .operators = operators, .support_dx = 2.4, .pair_precision = PairPrecision::double_precision};
         CHECK(Compared<D>{.method = method, .lattice = lattice, .planes = planes}.difference(60) < 1e-10);
       }
+  for (const auto lattice : {Lattice::node_centred, Lattice::cell_centred})
+    for (int planes = 1; planes <= D; ++planes) {
+      const Method method{.operators = "compatible",
+                          .support_dx = 2.4,
+                          .pair_precision = PairPrecision::double_precision,
+                          .compatible_iterations = 2000};
+      CAPTURE(static_cast<int>(lattice));
+      CHECK(Compared<D>{.method = method, .lattice = lattice, .planes = planes}.difference(60) < 1e-8);
+    }
   // Payload in single precision is rounded, and not by the same bits in both bodies.
   CHECK(Compared<D>{.method = {.zero_energy_control = 1}}.difference(60) < 1e-6);
   const Method bonds{.formulation = "tl_bond_associated", .pair_precision = PairPrecision::double_precision};

@@ -75,7 +75,7 @@ TEST_CASE("auto takes the cheap set-up on a plain node-centred lattice in a box 
 TEST_CASE("auto takes operators that close where particles are irregular") {
   const RunSpec jittered = run_with("formulation = \"auto\"\nlattice = \"cell_centred\"\njitter = 0.1\n");
   CHECK(jittered.method.operators == "compatible");
-  CHECK(jittered.method.kernel == "wendland_c2");
+  CHECK(jittered.method.kernel == "lucy");
   const RunSpec disc = run_with("formulation = \"auto\"\nlattice = \"cell_centred\"\n",
                                 "type = \"box\"\nmin = [0.0, 0.0]\nmax = [0.2, 0.05]",
                                 "type = \"sphere\"\ncentre = [0.1, 0.025]\nradius = 0.1");

@@ -20,12 +20,13 @@ struct BoundPoint {
   };
   Vec<D> X;                 ///< in the reference configuration [m]
   std::vector<Term> terms;  ///< of one component of the displacement
-  Index number = 0;         ///< tells points apart: holding one again along the same axis replaces what held it
+  Index number = 0;  ///< tells points apart: holding one again along the same axis replaces what held it
 };
 
-/// One component of the displacement of points that do not stand on particles: walls where the body ends half a spacing
-/// beyond its outermost particles. What holds them are forces along the rows of the weights C, so that they do no work
-/// but that of a prescribed motion: a -= M^-1 C^T (C M^-1 C^T)^-1 C a. The matrix is factored once.
+/// One component of the displacement of points that do not stand on particles: walls where the body ends half
+/// a spacing beyond its outermost particles. What holds them are forces along the rows of the weights C, so
+/// that they do no work but that of a prescribed motion: a -= M^-1 C^T (C M^-1 C^T)^-1 C a. The matrix is
+/// factored once.
 template <int D>
 class HeldPoints {
  public:
@@ -45,13 +46,13 @@ class HeldPoints {
     for (std::size_t k = 0; k < points_.size(); ++k) f(points_[k], displacements_[set_[k]]);
   }
 
-  /// Factors the system for particles of the given masses (one value a particle); those for which `fixed` is set do not
-  /// give way. Points that only fixed particles carry are left out. \throws InputError where holding some points says the
-  /// same thing twice, which leaves their forces open.
+  /// Factors the system for particles of the given masses (one value a particle); those for which `fixed` is
+  /// set do not give way. Points that only fixed particles carry are left out. \throws InputError where
+  /// holding some points says the same thing twice, which leaves their forces open.
   void factor(const Field& mass, const std::vector<char>& fixed);
 
-  /// Moves `values` (one component of a field) by the least change, weighted by mass, that makes the points follow
-  /// `target(X_f, displacement)`.
+  /// Moves `values` (one component of a field) by the least change, weighted by mass, that makes the points
+  /// follow `target(X_f, displacement)`.
   template <class Target>
   void project(double* values, Target&& target) const {
     std::vector<double> defect(rows());
@@ -71,7 +72,7 @@ class HeldPoints {
   std::vector<std::size_t> set_;  // of each point: which displacement it follows
   std::vector<Displacement> displacements_;
   std::unordered_map<Index, std::size_t> place_;  // of each point by its number
-  std::vector<std::size_t> row_point_;  // the points that take part
+  std::vector<std::size_t> row_point_;            // the points that take part
   struct System;
   std::unique_ptr<System> system_;
 };

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <taut/core/error.hpp>
 #include <taut/core/operators.hpp>
@@ -83,6 +84,8 @@ class ClosureSystem {
       });
       for (int d = 0; d < D; ++d) store(out.component(d) + s * lanes, sum[d]);
     }
+    // Mirror images follow their masters: they have no equations of their own.
+    for (int d = 0; d < D; ++d) std::fill(out.component(d) + p_.n, out.component(d) + p_.total, 0.0);
   }
 
   /// One over the diagonal of S, for each component of lambda.
