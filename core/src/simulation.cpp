@@ -346,17 +346,17 @@ Vec<D> Simulation<D>::displacement_at(const Vec<D>& X) const {
   std::sort(near.begin(), near.end());
   if (near.empty()) throw InputError("displacement_at: no particle within three spacings of the point");
   if (near.front().first < 1e-12 * dx * dx) return displacement(near.front().second);
-  Eigen::Matrix<double, D + 1, D + 1> normal = Eigen::Matrix<double, D + 1, D + 1>::Zero();
-  Eigen::Matrix<double, D + 1, D> right = Eigen::Matrix<double, D + 1, D>::Zero();
+  Fixed<D + 1> normal = Fixed<D + 1>::Zero();
+  Fixed<D + 1, D> right = Fixed<D + 1, D>::Zero();
   for (const auto& [r2, i] : near) {
     const double q2 = r2 / (9 * dx * dx);
     const double weight = (1 - q2) * (1 - q2) * (1 - q2) * (1 - q2) / (r2 / (dx * dx) + 0.05);
-    Eigen::Matrix<double, D + 1, 1> basis;
+    Fixed<D + 1, 1> basis;
     basis << 1, (impl_->cloud.X[i] - X) / dx;
     normal += weight * basis * basis.transpose();
     right += weight * basis * displacement(i).transpose();
   }
-  const Eigen::FullPivLU<Eigen::Matrix<double, D + 1, D + 1>> lu(normal);
+  const Eigen::FullPivLU<Fixed<D + 1>> lu(normal);
   if (!lu.isInvertible()) return displacement(near.front().second);
   return lu.solve(right).row(0).transpose();
 }
