@@ -322,6 +322,21 @@ Mat<D> Simulation<D>::cauchy_stress(std::size_t id) const {
   return prepared(*impl_).cauchy_stress(impl_->place(id));
 }
 template <int D>
+Mat<3> Simulation<D>::full_cauchy_stress(std::size_t id) const {
+  const Index i = impl_->place(id);
+  const Mat<3> sigma = prepared(*impl_).full_cauchy_stress(i);
+  const bool known = sigma.template topLeftCorner<D, D>().allFinite();
+  const Material<D>& material = *impl_->materials[impl_->material[id]];
+  for (int k = D; k < 3; ++k)
+    if (known && std::isnan(sigma(k, k)))
+      throw InputError(
+          fmt::format("the stress along {} is not known: material \"{}\" does not give it "
+                      "(Hyperelastic::has_lateral_state), or formulation \"{}\" does not "
+                      "(Formulation::full_cauchy_stress)",
+                      "xyz"[k], material.name(), method().formulation));
+  return sigma;
+}
+template <int D>
 Mat<D> Simulation<D>::first_piola_kirchhoff(std::size_t id) const {
   return prepared(*impl_).first_piola_kirchhoff(impl_->place(id));
 }
