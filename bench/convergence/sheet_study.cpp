@@ -57,9 +57,9 @@ Outcome run_sheet(const Method& method, bool fitted, double dx, int threads) {
     // The rim only holds the plate: it is told what to do.
     if (rim(cloud.X[i])) continue;
     const Mat<2> sigma = simulation.first_piola_kirchhoff(i), truth = exact.stress(cloud.X[i]);
-    const Mat<2> symmetric = (sigma + sigma.transpose()) / 2;
-    peak = std::max(
-        peak, Eigen::SelfAdjointEigenSolver<Mat<2>>(symmetric, Eigen::EigenvaluesOnly).eigenvalues()[1]);
+    const Eigen::Matrix2d symmetric = (sigma + sigma.transpose()) / 2;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> principal(symmetric, Eigen::EigenvaluesOnly);
+    peak = std::max(peak, principal.eigenvalues()[1]);
     difference += cloud.V[i] * (sigma - truth).squaredNorm();
     size += cloud.V[i] * truth.squaredNorm();
   }

@@ -93,6 +93,7 @@ Analytic neo_hookean_stretch(const Scene& scene, const RunSpec& run, const Sweep
          "[reference] neo_hookean_stretch: needs a box, material neo_hookean (plane strain) and a probe of a "
          "direct stress");
   const auto stretch = [scene](int axis, double t) {
+    if (axis >= scene.dimension) return 1.0;
     const auto i = static_cast<std::size_t>(axis);
     double growth = 0;
     for (const BoundarySpec& b : scene.boundaries)

@@ -7,6 +7,8 @@
 #include <lib/case.hpp>
 #include <lib/measure.hpp>
 #include <lib/reference.hpp>
+#include <lib/scene_keys.hpp>
+#include <taut/core/derived.hpp>
 
 namespace taut::bench {
 namespace {
@@ -33,7 +35,9 @@ class Sampler {
     if (type == "displacement") return simulation_->displacement_at(at_)[probe_->row];
     if (type == "velocity") return mean([&](std::size_t i) { return simulation_->velocity(i)[probe_->row]; });
     if (type == "cauchy_stress")
-      return mean([&](std::size_t i) { return simulation_->cauchy_stress(i)(probe_->row, probe_->column); });
+      return mean_of_stress([&](const Mat<3>& sigma) { return sigma(probe_->row, probe_->column); });
+    if (type == "von_mises") return mean_of_stress(von_mises);
+    if (type == "pressure") return mean_of_stress(pressure);
     if (type == "linear_momentum") return simulation_->linear_momentum()[probe_->row];
     return type == "kinetic_energy" ? simulation_->kinetic_energy() : simulation_->strain_energy();
   }
@@ -46,21 +50,23 @@ class Sampler {
     return sum / static_cast<double>(near_.size());
   }
 
+  template <class F>
+  double mean_of_stress(F&& value) const {
+    return mean([&](std::size_t i) { return value(simulation_->full_cauchy_stress(i)); });
+  }
+
   const Simulation<D>* simulation_;
   const ProbeSpec* probe_;
   Vec<D> at_ = Vec<D>::Zero();
   std::vector<std::size_t> near_;
 };
 
-template <int D>
-double field_value(const Mat<D>& sigma, const std::string& field) {
+double field_value(const Mat<3>& sigma, const std::string& field) {
   if (field == "cauchy_xx") return sigma(0, 0);
-  if (field == "cauchy_yy") return D > 1 ? sigma(D > 1, D > 1) : 0;
-  if (field == "cauchy_xy") return D > 1 ? sigma(0, D > 1) : 0;
-  Eigen::Matrix3d s = Eigen::Matrix3d::Zero();
-  s.template topLeftCorner<D, D>() = sigma;
-  s -= s.trace() / 3 * Eigen::Matrix3d::Identity();
-  return std::sqrt(1.5 * s.squaredNorm());
+  if (field == "cauchy_yy") return sigma(1, 1);
+  if (field == "cauchy_zz") return sigma(2, 2);
+  if (field == "cauchy_xy") return sigma(0, 1);
+  return von_mises(sigma);
 }
 
 template <int D>
@@ -70,9 +76,8 @@ Snapshot snapshot(const Simulation<D>& simulation) {
     std::array<double, 3> x{};
     for (int d = 0; d < D; ++d) x[static_cast<std::size_t>(d)] = simulation.position(i)[d];
     shot.x.push_back(x);
-    const Mat<D> sigma = simulation.cauchy_stress(i);
-    for (const char* field : {"von_mises", "cauchy_xx", "cauchy_yy", "cauchy_xy"})
-      shot.fields[field].push_back(field_value<D>(sigma, field));
+    const Mat<3> sigma = simulation.full_cauchy_stress(i);
+    for (const std::string& field : picture_fields()) shot.fields[field].push_back(field_value(sigma, field));
   }
   return shot;
 }

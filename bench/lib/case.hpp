@@ -27,8 +27,7 @@ struct Measured {
 /// The deformed body, for pictures.
 struct Snapshot {
   std::vector<std::array<double, 3>> x;  ///< current positions [m]
-  std::map<std::string, std::vector<double>>
-      fields;  ///< "von_mises", "cauchy_xx", "cauchy_yy", "cauchy_xy" [Pa]
+  std::map<std::string, std::vector<double>> fields;  ///< by names of `picture_fields()` [Pa]
 };
 
 struct CaseResult {

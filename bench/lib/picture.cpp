@@ -54,6 +54,7 @@ std::pair<double, const char*> stress_unit(double level) {
 const char* field_title(const std::string& field) {
   if (field == "cauchy_xx") return "Cauchy stress xx";
   if (field == "cauchy_yy") return "Cauchy stress yy";
+  if (field == "cauchy_zz") return "Cauchy stress zz";
   if (field == "cauchy_xy") return "Cauchy stress xy";
   return "von Mises stress";
 }

@@ -27,7 +27,7 @@ double HistorySpec::factor(double t) const {
 std::string ProbeSpec::signal_unit() const {
   if (type == "displacement") return "m";
   if (type == "velocity") return "m/s";
-  if (type == "cauchy_stress") return "Pa";
+  if (type == "cauchy_stress" || type == "von_mises" || type == "pressure") return "Pa";
   if (type == "linear_momentum") return "kg m/s";
   return "J";
 }

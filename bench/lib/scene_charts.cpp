@@ -263,7 +263,9 @@ std::string signal(const ProbeSpec& probe) {
   std::replace(text.begin(), text.end(), '_', ' ');
   if (probe.type == "cauchy_stress")
     text = "Cauchy stress " + axis(probe.row) + axis(probe.column);
-  else if (probe.type != "kinetic_energy" && probe.type != "strain_energy")
+  else if (probe.type == "von_mises")
+    text = "von Mises stress";
+  else if (probe.type != "pressure" && probe.type != "kinetic_energy" && probe.type != "strain_energy")
     text += ' ' + axis(probe.row);
   for (std::size_t d = 0; d < probe.at.size(); ++d)
     text += fmt::format("{}{:g}", d ? ", " : " at (", probe.at[d] * 1e3);

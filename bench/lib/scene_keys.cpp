@@ -42,6 +42,8 @@ const std::vector<SceneTable>& scene_tables() {
       {"probe", "displacement", {"at", "axis"}},
       {"probe", "velocity", {"at", "axis"}},
       {"probe", "cauchy_stress", {"at", "component"}},
+      {"probe", "von_mises", {"at"}},
+      {"probe", "pressure", {"at"}},
       {"probe", "linear_momentum", {"axis"}},
       {"probe", "kinetic_energy", {}},
       {"probe", "strain_energy", {}},
@@ -92,6 +94,10 @@ std::vector<std::string> keys_of(std::string_view table, std::string_view varian
     if (entry.table == table && (entry.variant.empty() || entry.variant == variant))
       keys.insert(keys.end(), entry.keys.begin(), entry.keys.end());
   return keys;
+}
+
+std::vector<std::string> picture_fields() {
+  return {"von_mises", "cauchy_xx", "cauchy_yy", "cauchy_zz", "cauchy_xy"};
 }
 
 std::vector<std::string> variants_of(std::string_view table) {

@@ -18,6 +18,8 @@ struct SceneTable {
 const std::vector<SceneTable>& scene_tables();
 /// Keys of a table, those of one variant included.
 std::vector<std::string> keys_of(std::string_view table, std::string_view variant = "");
+/// The stresses that pictures may show.
+std::vector<std::string> picture_fields();
 /// The variants of a table ("box", "sphere", …).
 std::vector<std::string> variants_of(std::string_view table);
 

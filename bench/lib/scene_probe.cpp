@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <lib/analytic.hpp>
 #include <lib/scene_keys.hpp>
 #include <lib/scene_parts.hpp>
@@ -65,16 +66,17 @@ void read_component(const TableReader& reader, ProbeSpec& probe, const SceneCont
   if (probe.type == "cauchy_stress") {
     const std::string axes = "xyz";
     std::vector<std::string> valid;
-    for (std::size_t r = 0; r < context.dimension; ++r)
-      for (std::size_t c = r; c < context.dimension; ++c) valid.push_back({axes[r], axes[c]});
+    for (std::size_t r = 0; r < 3; ++r)
+      for (std::size_t c = r; c < 3; ++c)
+        if (c == r || c < context.dimension) valid.push_back({axes[r], axes[c]});
     const std::string name = reader.choice("component", valid);
     probe.row = axis_number(name);
     probe.column = axis_number(name.substr(1));
-  } else if (probe.type != "kinetic_energy" && probe.type != "strain_energy") {
-    probe.row = axis_number(reader.choice("axis", context.axes()));
   }
-  if (probe.type == "displacement" || probe.type == "velocity" || probe.type == "cauchy_stress")
-    probe.at = reader.vector("at", context.dimension);
+  const std::vector<std::string> keys = keys_of("probe", probe.type);
+  const auto takes = [&](const char* key) { return std::find(keys.begin(), keys.end(), key) != keys.end(); };
+  if (takes("axis")) probe.row = axis_number(reader.choice("axis", context.axes()));
+  if (takes("at")) probe.at = reader.vector("at", context.dimension);
 }
 
 }  // namespace
@@ -124,7 +126,7 @@ PictureSpec read_picture(const Node& node) {
   PictureSpec picture;
   picture.place = node.place;
   picture.title = reader.text("title");
-  picture.field = reader.choice("field", {"von_mises", "cauchy_xx", "cauchy_yy", "cauchy_xy"}, "von_mises");
+  picture.field = reader.choice("field", picture_fields(), "von_mises");
   if (reader.has("of")) {
     const TableReader of(reader.require("of"), "picture.of", keys_of("sweep"));
     for (const std::string& key : keys_of("sweep"))

@@ -84,13 +84,13 @@ double surface_share(const Cloud<D>& cloud, const Surroundings<D>& around, const
 
 template <int D>
 double close_areas(Cloud<D>& cloud) {
-  using Basis = Eigen::Matrix<double, D + 1, 1>;
+  using Basis = Fixed<D + 1, 1>;
   Vec<D> centre = Vec<D>::Zero();
   for (const Vec<D>& X : cloud.X) centre += X / static_cast<double>(cloud.size());
   double volume = 0, total = 0, change = 0;
   for (const double V : cloud.V) volume += V;
-  Eigen::Matrix<double, D + 1, D + 1> normal = Eigen::Matrix<double, D + 1, D + 1>::Zero();
-  Eigen::Matrix<double, D + 1, D> defect = Eigen::Matrix<double, D + 1, D>::Zero();  // [sum B; sum X (x) B]
+  Fixed<D + 1> normal = Fixed<D + 1>::Zero();
+  Fixed<D + 1, D> defect = Fixed<D + 1, D>::Zero();  // [sum B; sum X (x) B]
   const auto basis = [&](std::size_t a) {
     Basis f;
     f << 1, (cloud.X[a] - centre) / cloud.dx;
@@ -104,10 +104,10 @@ double close_areas(Cloud<D>& cloud) {
     defect -= f * cloud.B[a].transpose();
     total += cloud.B[a].norm();
   }
-  const Eigen::FullPivLU<Eigen::Matrix<double, D + 1, D + 1>> lu(normal);
+  const Eigen::FullPivLU<Fixed<D + 1>> lu(normal);
   if (!lu.isInvertible())
     throw InputError("the boundary areas do not enclose the body: its surface particles lie on one plane");
-  const Eigen::Matrix<double, D + 1, D> multiplier = lu.solve(defect);
+  const Fixed<D + 1, D> multiplier = lu.solve(defect);
   for (std::size_t a = 0; a < cloud.size(); ++a) {
     if (cloud.B[a].isZero()) continue;
     const Vec<D> delta = cloud.B[a].norm() * (multiplier.transpose() * basis(a));

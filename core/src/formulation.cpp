@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <taut/core/error.hpp>
 #include <taut/core/formulation.hpp>
 #include <taut/internal/formulations.hpp>
@@ -66,6 +67,16 @@ void Formulation<D>::inspect() {
     failure_ = Failure{std::isfinite(v2) ? "runaway energy" : "not a number", i};
     return;
   }
+}
+
+template <int D>
+Mat<3> Formulation<D>::full_cauchy_stress(Index i) const {
+  Mat<3> sigma = Mat<3>::Zero();
+  sigma.template topLeftCorner<D, D>() = cauchy_stress(i);
+  const Plane plane = p_.materials[p_.material[static_cast<std::size_t>(i)]]->parameters().plane;
+  if (!(D == 2 && plane == Plane::stress))
+    for (int k = D; k < 3; ++k) sigma(k, k) = std::numeric_limits<double>::quiet_NaN();
+  return sigma;
 }
 
 template <int D>

@@ -19,9 +19,9 @@ constexpr double undetermined = 1e-3;
 /// First column of the inverse of a normal matrix whose monomials stand in ascending degree. Those that
 /// depend on earlier ones are left out: zero in the result. By Gauss-Jordan elimination.
 template <int N>
-Eigen::Matrix<double, N, 1> first_of_inverse(Eigen::Matrix<double, N, N> normal) {
-  const Eigen::Matrix<double, N, 1> size = normal.diagonal();
-  Eigen::Matrix<double, N, 1> z = Eigen::Matrix<double, N, 1>::Unit(0);
+Fixed<N, 1> first_of_inverse(Fixed<N> normal) {
+  const Fixed<N, 1> size = normal.diagonal();
+  Fixed<N, 1> z = Fixed<N, 1>::Unit(0);
   for (int k = 0; k < N; ++k) {
     const double pivot = normal(k, k);
     if (!(pivot > undetermined * size[k])) {
@@ -71,7 +71,7 @@ double PatchFit<D>::weight(const Vec<D>& distance) const {
 /// z with sum_b w_b (z . m_b) f_b = f(target) for all f of the monomials m that the patch determines.
 template <int D>
 typename PatchFit<D>::Terms PatchFit<D>::functional(Index target) const {
-  Eigen::Matrix<double, terms, terms> normal = Eigen::Matrix<double, terms, terms>::Zero();
+  Fixed<terms> normal = Fixed<terms>::Zero();
   for (const Index b : patch(target)) {
     const Vec<D> distance = samples_[static_cast<std::size_t>(b)] - X_[static_cast<std::size_t>(target)];
     const Terms m = monomials(distance);

@@ -61,7 +61,7 @@ class QuadraticFit {
   }
 
  private:
-  using Terms = Eigen::Matrix<double, terms, 1>;
+  using Terms = Fixed<terms, 1>;
 
   Terms monomials(const Vec<D>& X) const {
     const Vec<D> s = X / p_.dx;
@@ -75,7 +75,7 @@ class QuadraticFit {
 
   /// False where the neighbours of a do not determine a quadratic, or hardly.
   bool fit(Index a, const PairList& pairs) {
-    Eigen::Matrix<double, terms, terms> normal = Eigen::Matrix<double, terms, terms>::Zero();
+    Fixed<terms> normal = Fixed<terms>::Zero();
     const Vec<D> Xa = p_.X.template vec<D>(a);
     pairs.for_each(a, [&](Index b, std::int64_t, int) {
       const Vec<D> X = p_.X.template vec<D>(b) - Xa;
@@ -85,9 +85,9 @@ class QuadraticFit {
     if (!(normal.diagonal().minCoeff() > 0)) return false;
     const Terms scale = normal.diagonal().cwiseSqrt().cwiseInverse();
     normal = scale.asDiagonal() * normal * scale.asDiagonal();
-    const Eigen::LDLT<Eigen::Matrix<double, terms, terms>> factors(normal);
+    const Eigen::LDLT<Fixed<terms>> factors(normal);
     if (!(factors.vectorD().minCoeff() > least_pivot)) return false;
-    using Columns = Eigen::Matrix<double, terms, D>;
+    using Columns = Fixed<terms, D>;
     const Columns unit = Columns::Identity();
     Columns columns = factors.solve(unit);
     columns += factors.solve(unit - normal * columns);  // what a pivot of 1e-5 costs in digits
@@ -115,7 +115,7 @@ class QuadraticFit {
   const Particles<D>& p_;
   const Kernel& kernel_;
   double h_, top_;
-  std::vector<Eigen::Matrix<double, D, terms>> coefficients_;
+  std::vector<Fixed<D, terms>> coefficients_;
   Field signs_;  // of the reflections that images are; empty without images
 };
 

@@ -422,6 +422,21 @@ Mat<D> Simulation<D>::cauchy_stress(std::size_t id) const {
   return prepared(*impl_).cauchy_stress(impl_->place(id));
 }
 template <int D>
+Mat<3> Simulation<D>::full_cauchy_stress(std::size_t id) const {
+  const Index i = impl_->place(id);
+  const Mat<3> sigma = prepared(*impl_).full_cauchy_stress(i);
+  const bool known = sigma.template topLeftCorner<D, D>().allFinite();
+  const Material<D>& material = *impl_->materials[impl_->material[id]];
+  for (int k = D; k < 3; ++k)
+    if (known && std::isnan(sigma(k, k)))
+      throw InputError(
+          fmt::format("the stress along {} is not known: material \"{}\" does not give it "
+                      "(Hyperelastic::has_lateral_state), or formulation \"{}\" does not "
+                      "(Formulation::full_cauchy_stress)",
+                      "xyz"[k], material.name(), method().formulation));
+  return sigma;
+}
+template <int D>
 Mat<D> Simulation<D>::first_piola_kirchhoff(std::size_t id) const {
   return prepared(*impl_).first_piola_kirchhoff(impl_->place(id));
 }
@@ -446,17 +461,17 @@ Vec<D> Simulation<D>::displacement_at(const Vec<D>& X) const {
   std::sort(near.begin(), near.end());
   if (near.empty()) throw InputError("displacement_at: no particle within three spacings of the point");
   if (near.front().first < 1e-12 * dx * dx) return displacement(near.front().second);
-  Eigen::Matrix<double, D + 1, D + 1> normal = Eigen::Matrix<double, D + 1, D + 1>::Zero();
-  Eigen::Matrix<double, D + 1, D> right = Eigen::Matrix<double, D + 1, D>::Zero();
+  Fixed<D + 1> normal = Fixed<D + 1>::Zero();
+  Fixed<D + 1, D> right = Fixed<D + 1, D>::Zero();
   for (const auto& [r2, i] : near) {
     const double q2 = r2 / (9 * dx * dx);
     const double weight = (1 - q2) * (1 - q2) * (1 - q2) * (1 - q2) / (r2 / (dx * dx) + 0.05);
-    Eigen::Matrix<double, D + 1, 1> basis;
+    Fixed<D + 1, 1> basis;
     basis << 1, (impl_->cloud.X[i] - X) / dx;
     normal += weight * basis * basis.transpose();
     right += weight * basis * displacement(i).transpose();
   }
-  const Eigen::FullPivLU<Eigen::Matrix<double, D + 1, D + 1>> lu(normal);
+  const Eigen::FullPivLU<Fixed<D + 1>> lu(normal);
   if (!lu.isInvertible()) return displacement(near.front().second);
   return lu.solve(right).row(0).transpose();
 }

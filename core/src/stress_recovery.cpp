@@ -108,9 +108,33 @@ std::vector<Mat<D>> StressRecovery<D>::first_piola_kirchhoff() const {
   return recover([](const StressSample<D>& s) { return s.P; });
 }
 
+namespace {
+template <int D>
+Mat<3> cauchy_stress_of(const StressSample<D>& s, const Particles<D>& p) {
+  // Only hyperelastic laws have samples.
+  return dynamic_cast<const Hyperelastic<D>&>(*p.materials[s.material]).cauchy_stress(s.F);
+}
+}  // namespace
+
 template <int D>
 std::vector<Mat<D>> StressRecovery<D>::cauchy_stress() const {
-  return recover([](const StressSample<D>& s) { return Mat<D>(s.P * s.F.transpose() / s.F.determinant()); });
+  return recover([&](const StressSample<D>& s) {
+    return Mat<D>(cauchy_stress_of(s, simulation_->particles).template topLeftCorner<D, D>());
+  });
+}
+
+template <int D>
+std::vector<Mat<3>> StressRecovery<D>::full_cauchy_stress() const {
+  const std::vector<Mat<D>> in_plane = cauchy_stress();
+  std::vector<Mat<3>> sigma(in_plane.size(), Mat<3>::Zero());
+  for (std::size_t i = 0; i < sigma.size(); ++i) sigma[i].template topLeftCorner<D, D>() = in_plane[i];
+  for (int k = D; k < 3; ++k) {
+    const std::vector<Mat<D>> lateral = recover([&](const StressSample<D>& s) {
+      return Mat<D>(Mat<D>::Constant(cauchy_stress_of(s, simulation_->particles)(k, k)));
+    });
+    for (std::size_t i = 0; i < sigma.size(); ++i) sigma[i](k, k) = lateral[i](0, 0);
+  }
+  return sigma;
 }
 
 template class StressRecovery<1>;

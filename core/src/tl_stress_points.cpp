@@ -46,14 +46,16 @@ class TlStressPoints final : public HyperelasticForm<D> {
   void update_accelerations(double) override;
 
   Mat<D> deformation_gradient(Index i) const override {
-    return mean(i, [](const Mat<D>& F, const Mat<D>&) { return F; });
+    return mean<D>(i, [](auto&, const Mat<D>& F, const Mat<D>&) { return F; });
   }
   Mat<D> first_piola_kirchhoff(Index i) const override {
-    return mean(i, [](const Mat<D>&, const Mat<D>& P) { return P; });
+    return mean<D>(i, [](auto&, const Mat<D>&, const Mat<D>& P) { return P; });
   }
   Mat<D> cauchy_stress(Index i) const override {
-    return mean(i,
-                [](const Mat<D>& F, const Mat<D>& P) { return Mat<D>(P * F.transpose() / F.determinant()); });
+    return full_cauchy_stress(i).template topLeftCorner<D, D>();
+  }
+  Mat<3> full_cauchy_stress(Index i) const override {
+    return mean<3>(i, [](auto& law, const Mat<D>& F, const Mat<D>&) { return law.cauchy_stress(F); });
   }
   /// Those of the cells, at the mean of their corners.
   void visit_stresses(const std::function<void(const StressSample<D>&)>& f) const override;
@@ -88,8 +90,8 @@ class TlStressPoints final : public HyperelasticForm<D> {
     const double* shares = cells_.shares(s);
     return shares ? load(shares + j) : pack(1);
   }
-  template <class F>
-  Mat<D> mean(Index i, F&& f) const;
+  template <int N, class F>
+  Mat<N> mean(Index i, F&& f) const;
   /// Calls f(l, F, P) for the first `count` of the cells that `cells` holds, of strip s from j on.
   template <class Cells, class F>
   void with_stresses(const Strip& s, Index j, const Cells& cells, Index count, F&& f) const;
@@ -343,18 +345,19 @@ void TlStressPoints<D>::visit_stresses(const std::function<void(const StressSamp
       });
 }
 
-// Mean of f(F, P) over the cells of a particle, with their volumes; over their images as well where the
+// Mean of f(law, F, P) over the cells of a particle, with their volumes; over their images as well where the
 // particle lies on symmetry planes.
 template <int D>
-template <class F>
-Mat<D> TlStressPoints<D>::mean(Index i, F&& f) const {
-  Mat<D> sum = Mat<D>::Zero();
+template <int N, class F>
+Mat<N> TlStressPoints<D>::mean(Index i, F&& f) const {
+  Mat<N> sum = Mat<N>::Zero();
   double volume = 0;
   cells_.for_cells_of(i, [&](const Strip& s, Index j) {
     with_cells(s, j, [&](const auto& cells) {
       const double V = share(s, j)[0] * cells.volume()[0];
-      with_stresses(s, j, cells, 1,
-                    [&](int, const Mat<D>& of_cell, const Mat<D>& P) { sum += V * f(of_cell, P); });
+      with_stresses(s, j, cells, 1, [&](int, const Mat<D>& of_cell, const Mat<D>& P) {
+        sum += V * f(*materials_[s.material], of_cell, P);
+      });
       volume += V;
     });
   });

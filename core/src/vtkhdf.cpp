@@ -1,5 +1,7 @@
+#include <taut/core/derived.hpp>
 #include <taut/core/error.hpp>
 #include <taut/core/simulation.hpp>
+#include <taut/internal/simulation_impl.hpp>
 #include <taut/internal/vtkhdf.hpp>
 
 #ifdef TAUT_HAS_HDF5
@@ -9,7 +11,6 @@
 #include <filesystem>
 #include <numeric>
 #endif
-#include <cmath>
 
 namespace taut {
 namespace internal {
@@ -146,19 +147,6 @@ bool has_field_output() {
 #endif
 }
 
-namespace {
-
-template <int D>
-double von_mises(const Mat<D>& sigma) {
-  // Out-of-plane components of 1D and 2D states are not part of the in-plane tensor and count as zero.
-  Eigen::Matrix3d s = Eigen::Matrix3d::Zero();
-  s.template topLeftCorner<D, D>() = sigma;
-  s -= s.trace() / 3 * Eigen::Matrix3d::Identity();
-  return std::sqrt(1.5 * s.squaredNorm());
-}
-
-}  // namespace
-
 template <int D>
 void write_vtkhdf(const std::string& file, const Simulation<D>& simulation) {
   using internal::PointArray;
@@ -171,14 +159,16 @@ void write_vtkhdf(const std::string& file, const Simulation<D>& simulation) {
   PointArray mass{"mass", 1, std::vector<double>(n)};
   for (std::size_t i = 0; i < n; ++i) {
     const Vec<D> x = simulation.position(i), u = simulation.displacement(i), v = simulation.velocity(i);
-    const Mat<D> sigma = simulation.cauchy_stress(i);
+    // NaN rather than no file where a user's material does not say what is out of the plane.
+    const Mat<3> sigma = simulation.impl_->formulation->full_cauchy_stress(simulation.impl_->place(i));
     for (int r = 0; r < D; ++r) {
       xyz[3 * i + static_cast<std::size_t>(r)] = x[r];
       displacement.values[3 * i + static_cast<std::size_t>(r)] = u[r];
       velocity.values[3 * i + static_cast<std::size_t>(r)] = v[r];
-      for (int c = 0; c < D; ++c) stress.values[9 * i + static_cast<std::size_t>(3 * r + c)] = sigma(r, c);
     }
-    mises.values[i] = von_mises<D>(sigma);
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c) stress.values[9 * i + static_cast<std::size_t>(3 * r + c)] = sigma(r, c);
+    mises.values[i] = von_mises(sigma);
     mass.values[i] = simulation.mass(i);
   }
   const PointArray arrays[] = {std::move(displacement), std::move(velocity), std::move(stress),

@@ -1,6 +1,6 @@
 #include <taut/core/error.hpp>
 
-#include "models.hpp"
+#include "lateral.hpp"
 #include "polar.hpp"
 
 namespace taut {
@@ -13,18 +13,23 @@ template <int D>
 class CorotatedSvk final : public Hyperelastic<D> {
  public:
   explicit CorotatedSvk(const MaterialParameters& parameters)
-      : Hyperelastic<D>(parameters), lambda_(in_plane_lambda<D>(parameters)), mu_(parameters.mu()) {}
+      : Hyperelastic<D>(parameters),
+        lambda_(in_plane_lambda<D>(parameters)),
+        mu_(parameters.mu()),
+        lateral_(lateral_hooke<D>(parameters)) {}
 
   std::string_view name() const override { return "corotated_svk"; }
   bool has_energy() const override { return false; }
+  bool has_lateral_state() const override { return true; }
 
   void stress(const StressBlock<D>& block) const override {
     if (block.energy)
       throw InputError("material 'corotated_svk' has no stored energy: P = R S is not the derivative of one");
     for (int p = 0; p < block.n; p += lanes) {
       const TensorPack<D> F = load_tensor<D>(block.F + p, block.stride);
-      const TensorPack<D> S = hooke(green_strain(displacement_gradient(F)), lambda_, mu_);
-      store_tensor(block.P + p, block.stride, product(polar_rotation(F), S));
+      const TensorPack<D> E = green_strain(displacement_gradient(F));
+      store_tensor(block.P + p, block.stride, product(polar_rotation(F), hooke(E, lambda_, mu_)));
+      if (block.P_lateral) lateral(block, p, E);
     }
   }
 
@@ -44,7 +49,14 @@ class CorotatedSvk final : public Hyperelastic<D> {
     return largest;
   }
 
+  /// R_kk = 1, hence P_kk = S_kk.
+  void lateral(const StressBlock<D>& block, int p, const TensorPack<D>& E) const {
+    const Pack tr = trace(E);
+    store_lateral(block, p, lateral_.stress * tr, pack_sqrt(1.0 + (2 * lateral_.strain) * tr));
+  }
+
   double lambda_, mu_;
+  LateralHooke lateral_;
 };
 
 /// In the principal frame, with dF = a N^T, the tensor is A = (lambda + mu) N (U N)^T + mu U + G,

@@ -33,6 +33,16 @@ double in_plane_lambda(const MaterialParameters& parameters) {
   return is_plane_stress<D>(parameters) ? 2 * lambda * mu / (lambda + 2 * mu) : lambda;
 }
 
+/// What a law says of one deformation gradient, made three-dimensional: P, and the stretches along the axes
+/// that the body does not have (1 along the others). See `Hyperelastic::cauchy_stress` for what is unknown.
+template <int D>
+struct NominalState {
+  Mat<3> P;
+  Vec<3> lateral;
+};
+template <int D>
+NominalState<D> nominal_state(const Hyperelastic<D>& law, const Mat<D>& F);
+
 /// Bounds of the deformation, made consistent: D stretches within [min, max] leave J within [min^D, max^D].
 template <int D>
 struct StretchRange {

@@ -1,6 +1,5 @@
-#include "models.hpp"
+#include "lateral.hpp"
 #include "plane_stress_neo_hookean.hpp"
-#include "tensor_pack.hpp"
 
 namespace taut {
 namespace {
@@ -15,18 +14,20 @@ class NeoHookean final : public Hyperelastic<D> {
       : Hyperelastic<D>(parameters), lambda_(parameters.lambda()), mu_(parameters.mu()) {}
 
   std::string_view name() const override { return "neo_hookean"; }
+  bool has_lateral_state() const override { return true; }
 
   void stress(const StressBlock<D>& block) const override {
+    const bool outputs = block.energy || block.P_lateral;
     if (is_plane_stress<D>(this->parameters_))
-      block.energy ? sheet<true>(block) : sheet<false>(block);
+      outputs ? sheet<true>(block) : sheet<false>(block);
     else
-      block.energy ? solid<true>(block) : solid<false>(block);
+      outputs ? solid<true>(block) : solid<false>(block);
   }
 
   double wave_speed(double stretch_min, double stretch_max, double J_min, double J_max) const override;
 
  private:
-  template <bool energy>
+  template <bool outputs>
   void solid(const StressBlock<D>& block) const {
     for (int p = 0; p < block.n; p += lanes) {
       const TensorPack<D> F = load_tensor<D>(block.F + p, block.stride);
@@ -37,14 +38,17 @@ class NeoHookean final : public Hyperelastic<D> {
       TensorPack<D> P;
       for (int i = 0; i < D * D; ++i) P.c[i] = mu_ * F.c[i] + factor * cof.c[i];
       store_tensor(block.P + p, block.stride, P);
-      if constexpr (energy)
-        store(block.energy + p,
-              mu_ * (0.5 * norm_squared(H) + (trace(H) - log_J)) + 0.5 * lambda_ * log_J * log_J);
+      if constexpr (outputs) {
+        if (block.energy)
+          store(block.energy + p,
+                mu_ * (0.5 * norm_squared(H) + (trace(H) - log_J)) + 0.5 * lambda_ * log_J * log_J);
+        if (block.P_lateral) store_lateral(block, p, lambda_ * log_J, pack(1));
+      }
     }
   }
 
   /// Plane stress. With P_33 = 0, lambda ln J = -mu (w - 1), w = F_33²: the in-plane P is mu (F - w F^-T).
-  template <bool energy>
+  template <bool outputs>
   void sheet(const StressBlock<D>& block) const {
     for (int p = 0; p < block.n; p += lanes) {
       const TensorPack<D> F = load_tensor<D>(block.F + p, block.stride);
@@ -56,10 +60,14 @@ class NeoHookean final : public Hyperelastic<D> {
       TensorPack<D> P;
       for (int i = 0; i < D * D; ++i) P.c[i] = mu_ * F.c[i] + factor * cof.c[i];
       store_tensor(block.P + p, block.stride, P);
-      if constexpr (energy) {
-        const Pack log_J = log_J2 + 0.5 * log_of(thickness);
-        store(block.energy + p, mu_ * (0.5 * norm_squared(H) + (trace(H) + 0.5 * thickness.excess - log_J)) +
-                                    0.5 * lambda_ * log_J * log_J);
+      if constexpr (outputs) {
+        if (block.energy) {
+          const Pack log_J = log_J2 + 0.5 * log_of(thickness);
+          store(block.energy + p,
+                mu_ * (0.5 * norm_squared(H) + (trace(H) + 0.5 * thickness.excess - log_J)) +
+                    0.5 * lambda_ * log_J * log_J);
+        }
+        if (block.P_lateral) store_lateral(block, p, pack(0), pack_sqrt(thickness.w));
       }
     }
   }

@@ -1,5 +1,4 @@
-#include "models.hpp"
-#include "tensor_pack.hpp"
+#include "lateral.hpp"
 
 namespace taut {
 namespace {
@@ -11,12 +10,16 @@ template <int D>
 class StVenantKirchhoff final : public Hyperelastic<D> {
  public:
   explicit StVenantKirchhoff(const MaterialParameters& parameters)
-      : Hyperelastic<D>(parameters), lambda_(in_plane_lambda<D>(parameters)), mu_(parameters.mu()) {}
+      : Hyperelastic<D>(parameters),
+        lambda_(in_plane_lambda<D>(parameters)),
+        mu_(parameters.mu()),
+        lateral_(lateral_hooke<D>(parameters)) {}
 
   std::string_view name() const override { return "st_venant_kirchhoff"; }
+  bool has_lateral_state() const override { return true; }
 
   void stress(const StressBlock<D>& block) const override {
-    block.energy ? evaluate<true>(block) : evaluate<false>(block);
+    block.energy || block.P_lateral ? evaluate<true>(block) : evaluate<false>(block);
   }
 
   double wave_speed(double stretch_min, double stretch_max, double, double) const override {
@@ -33,17 +36,21 @@ class StVenantKirchhoff final : public Hyperelastic<D> {
   }
 
  private:
-  template <bool energy>
+  template <bool outputs>
   void evaluate(const StressBlock<D>& block) const {
     for (int p = 0; p < block.n; p += lanes) {
       const TensorPack<D> F = load_tensor<D>(block.F + p, block.stride);
       const TensorPack<D> E = green_strain(displacement_gradient(F));
       store_tensor(block.P + p, block.stride, product(F, hooke(E, lambda_, mu_)));
-      if constexpr (energy) store(block.energy + p, hooke_energy(E, lambda_, mu_));
+      if constexpr (outputs) {
+        if (block.energy) store(block.energy + p, hooke_energy(E, lambda_, mu_));
+        if (block.P_lateral) store_lateral(block, p, E, lateral_);
+      }
     }
   }
 
   double lambda_, mu_;
+  LateralHooke lateral_;
 };
 
 }  // namespace

@@ -73,6 +73,24 @@ TEST_CASE("sweeps combine, and replace what they sweep") {
   CHECK(material_of(scene, scene.runs[0], points.front()).parameters.nu == 0.0);
 }
 
+TEST_CASE("probes see the third direction, and scalars of the whole stress") {
+  const std::string probe = "[[probe]]\nname = \"s\"\nat = [0.1, 0.025]\ntype = ";
+  const auto read = [&](const std::string& rest) {
+    return parse_scene(test::good_scene + probe + rest + "\n", "s.toml").probes.back();
+  };
+  const ProbeSpec across = read("\"cauchy_stress\"\ncomponent = \"zz\"");
+  CHECK(across.row == 2);
+  CHECK(across.column == 2);
+  for (const char* type : {"von_mises", "pressure"}) {
+    const ProbeSpec scalar = read('"' + std::string(type) + '"');
+    CHECK(scalar.at == std::vector<double>{0.1, 0.025});
+    CHECK(scalar.unit() == "Pa");
+  }
+  const std::string message =
+      message_of(test::good_scene + probe + "\"cauchy_stress\"\ncomponent = \"xz\"\n");
+  CHECK(message.find("xx, xy, yy, zz") != std::string::npos);
+}
+
 TEST_CASE("quick changes a scene when asked for, and is checked even when not") {
   const std::string text = test::good_scene + "[sweep]\nload = [1, 2, 3]\n[quick]\nload = 2\ndx = 0.025\n";
   CHECK(parse_scene(text, "s.toml").points().size() == 3);

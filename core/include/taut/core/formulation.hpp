@@ -61,6 +61,9 @@ class Formulation : public Dynamics {
   virtual void inspect();
 
   virtual Mat<D> cauchy_stress(Index i) const = 0;
+  /// The same with the axes that the body does not have; NaN along those where nothing is known, zero in
+  /// plane stress. Unless it is overridden, that is all that is known.
+  virtual Mat<3> full_cauchy_stress(Index i) const;
   /// \throws InputError where the formulation has no reference configuration.
   virtual Mat<D> deformation_gradient(Index i) const;
   virtual Mat<D> first_piola_kirchhoff(Index i) const;

@@ -38,7 +38,7 @@ class PatchFit {
 
  private:
   static constexpr int terms = 1 + D + D * (D + 1) / 2;
-  using Terms = Eigen::Matrix<double, terms, 1>;
+  using Terms = Fixed<terms, 1>;
 
   Terms monomials(const Vec<D>& distance) const;
   double weight(const Vec<D>& distance) const;

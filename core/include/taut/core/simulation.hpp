@@ -70,6 +70,10 @@ struct SimulationImpl;
 
 template <int D>
 class StressRecovery;
+template <int D>
+class Simulation;
+template <int D>
+void write_vtkhdf(const std::string& file, const Simulation<D>& simulation);
 
 /// One or more bodies under one method. Everything is set before the first `run` or `relax`; set-up
 /// (ordering, pair lists, operators) happens then, or when `prepare` is called.
@@ -125,6 +129,10 @@ class Simulation {
   Vec<D> displacement(std::size_t id) const;
   Vec<D> velocity(std::size_t id) const;
   Mat<D> cauchy_stress(std::size_t id) const;
+  /// The Cauchy stress with the axes that the body does not have: sigma_zz of plane strain, sigma_yy =
+  /// sigma_zz of 1D, zeros of plane stress. What von_mises and its like take (derived.hpp). \throws
+  /// InputError for a material or a formulation of the user's own that does not give them.
+  Mat<3> full_cauchy_stress(std::size_t id) const;
   Mat<D> first_piola_kirchhoff(std::size_t id) const;  ///< \throws InputError for updated Lagrangian forms
   Mat<D> deformation_gradient(std::size_t id) const;   ///< \throws InputError for updated Lagrangian forms
   double mass(std::size_t id) const;
@@ -143,11 +151,13 @@ class Simulation {
 
  private:
   friend class StressRecovery<D>;
+  friend void write_vtkhdf<D>(const std::string&, const Simulation<D>&);
   std::unique_ptr<SimulationImpl<D>> impl_;
 };
 
-/// Fields of the present state as VTKHDF (ParaView). \throws RunError when the file cannot be written or this
-/// build has no HDF5.
+/// Fields of the present state as VTKHDF (ParaView): displacement, velocity, the whole Cauchy stress (nine
+/// components), von_mises, mass, id. Stresses that the material does not give are NaN. \throws RunError when
+/// the file cannot be written or this build has no HDF5.
 template <int D>
 void write_vtkhdf(const std::string& file, const Simulation<D>& simulation);
 /// Whether this build writes VTKHDF files.

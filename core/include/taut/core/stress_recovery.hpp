@@ -31,6 +31,9 @@ class StressRecovery {
   // Of the present state, in the user's order of particles [Pa].
   std::vector<Mat<D>> first_piola_kirchhoff() const;
   std::vector<Mat<D>> cauchy_stress() const;
+  /// With the axes that the body does not have, as `Simulation::full_cauchy_stress`; NaN where a user's
+  /// material does not give them.
+  std::vector<Mat<3>> full_cauchy_stress() const;
 
   std::size_t bytes() const { return fit_.bytes(); }
 

@@ -42,8 +42,10 @@ class TotalLagrangian : public HyperelasticForm<D> {
     return stress(i, deformation_gradient(i));
   }
   Mat<D> cauchy_stress(Index i) const override {
-    const Mat<D> F = deformation_gradient(i);
-    return stress(i, F) * F.transpose() / F.determinant();
+    return full_cauchy_stress(i).template topLeftCorner<D, D>();
+  }
+  Mat<3> full_cauchy_stress(Index i) const override {
+    return materials_[p_.material[static_cast<std::size_t>(i)]]->cauchy_stress(deformation_gradient(i));
   }
   void visit_stresses(const std::function<void(const StressSample<D>&)>& f) const override {
     for (Index i = 0; i < p_.n; ++i) {

@@ -55,13 +55,16 @@ class UpdatedLagrangian : public Formulation<D> {
     return h_ / (speed * (1 + 0.6 * this->method_.viscosity));
   }
   Mat<D> cauchy_stress(Index i) const override {
-    Mat<D> sigma;
-    const double factor = rho_.component(0)[i] * rho_material_.component(0)[i];
+    return full_cauchy_stress(i).template topLeftCorner<D, D>();
+  }
+  Mat<3> full_cauchy_stress(Index i) const override {
+    Mat<D> s;
     for (int c = 0; c < S; ++c) {
       const auto [r, q] = sym_axes<D>(c);
-      sigma(r, q) = sigma(q, r) = T_.component(c)[i] * factor;
+      s(r, q) = s(q, r) = s_.component(c)[i];
     }
-    return sigma;
+    return materials_[p_.material[static_cast<std::size_t>(i)]]->cauchy_stress(s,
+                                                                               rho_material_.component(0)[i]);
   }
   std::int64_t pairs() const override { return list_.pairs().pairs(); }
   std::int64_t rebuilds() const override { return list_.builds() - 1; }

@@ -37,6 +37,11 @@ struct StressBlock {
   const double* F = nullptr;
   double* P = nullptr;
   double* energy = nullptr;  ///< stored energy per reference volume [J/m^3], one a particle; or null
+  /// Nominal stress P_kk [Pa] and stretch F_kk along the axes k = D … 2 that the body does not have,
+  /// component k - D: P_kk of a stretch of 1 in 1D and plane strain, the stretch that leaves P_33 = 0 in
+  /// plane stress. Both or neither; only for laws that `has_lateral_state()`.
+  double* P_lateral = nullptr;
+  double* F_lateral = nullptr;
 };
 
 /// Common part of all materials.
@@ -72,10 +77,17 @@ class Hyperelastic : public Material<D> {
   using Material<D>::Material;
   /// Whether the stress is the derivative of a stored energy. Ask before asking for energies.
   virtual bool has_energy() const { return true; }
-  /// P (and energy where asked for) of a block. A state outside the law's domain (det F <= 0 where the law
-  /// has a logarithm or a rotation in it) gives NaN.
-  /// \throws InputError if energy is asked for of a law that has none.
+  /// Whether `stress` fills P_lateral and F_lateral. A law that does not leaves the stresses along the axes
+  /// that the body does not have unknown, but in plane stress, where they are zero.
+  virtual bool has_lateral_state() const { return D == 3; }
+  /// P (and energy and lateral state where asked for) of a block. A state outside the law's domain (det F <=
+  /// 0 where the law has a logarithm or a rotation in it) gives NaN. \throws InputError if energy is asked
+  /// for of a law that has none.
   virtual void stress(const StressBlock<D>& block) const = 0;
+  /// The whole Cauchy stress at F [Pa], P F^T / J with all three stretches in J; for output. Where the
+  /// lateral state is unknown, lateral stretches count as 1, and lateral stresses are NaN (zero in plane
+  /// stress).
+  virtual Mat<3> cauchy_stress(const Mat<D>& F) const;
 };
 
 /// Number of stored components of a symmetric tensor: D = 1: xx; 2: xx, yy, xy; 3: xx, yy, zz, yz, xz, xy.
@@ -109,10 +121,14 @@ class Hypoelastic : public Material<D> {
   virtual void rate(const RateBlock<D>& block) const = 0;
   /// sigma from s and rho.
   virtual void stress(const RateBlock<D>& block) const = 0;
+  /// The whole Cauchy stress [Pa] where the in-plane deviatoric stress is s and the density rho; for output.
+  /// Lateral stresses are those of s minus the pressure s_xx - sigma_xx; zero in plane stress.
+  virtual Mat<3> cauchy_stress(const Mat<D>& s, double rho) const;
 };
 
 /// A material by its name:
 /// - `linear_elastic`: small strain, P = sigma(eps), eps = sym(F) - I. Not objective: rotation makes stress.
+///   Its Cauchy stress is sigma(eps) as well, for the theory makes no difference.
 /// - `st_venant_kirchhoff`: P = F S, S = lambda tr(E) I + 2 mu E, E = (F^T F - I) / 2.
 /// - `corotated_svk`: P = R S, R the rotation of F = R U: objective, not the derivative of an energy.
 /// - `neo_hookean`: P = mu (F - F^-T) + lambda ln J F^-T (Bonet and Wood 1997, section 5.4.3).
