@@ -27,9 +27,8 @@ std::function<bool(const Vec<D>&)> on_face(const Cloud<D>& cloud, std::string_vi
   for (std::size_t p = 0; p < cloud.size(); ++p)
     if (cloud.extra.empty() || !cloud.extra[p]) outermost = std::max(outermost, sign * cloud.X[p][axis]);
   if (!std::isfinite(outermost)) throw InputError(fmt::format("face {} of an empty cloud", face));
-  return [axis, at = sign * outermost, tolerance = cloud.dx / 4](const Vec<D>& X) {
-    return std::abs(X[axis] - at) <= tolerance;
-  };
+  return [axis, origin = cloud.origin[axis], at = sign * outermost, tolerance = cloud.dx / 4](
+             const Vec<D>& X) { return std::abs((X[axis] - origin) - at) <= tolerance; };
 }
 
 template std::function<bool(const Vec<1>&)> on_face<1>(const Cloud<1>&, std::string_view);
