@@ -23,7 +23,7 @@ class CorotatedSvk final : public Hyperelastic<D> {
       throw InputError("material 'corotated_svk' has no stored energy: P = R S is not the derivative of one");
     for (int p = 0; p < block.n; p += lanes) {
       const TensorPack<D> F = load_tensor<D>(block.F + p, block.stride);
-      const TensorPack<D> S = hooke(green_strain(displacement_gradient(F)), lambda_, mu_);
+      const TensorPack<D> S = hooke(green_strain(displacement_gradient(block, p, F)), lambda_, mu_);
       store_tensor(block.P + p, block.stride, product(polar_rotation(F), S));
     }
   }

@@ -37,6 +37,9 @@ struct StressBlock {
   const double* F = nullptr;
   double* P = nullptr;
   double* energy = nullptr;  ///< stored energy per reference volume [J/m^3], one a particle; or null
+  /// Diagonal of H = F - I, component i of particle p at [i * stride + p], to the digits that F itself has no
+  /// room for where strains are small; or null.
+  const double* H_diagonal = nullptr;
 };
 
 /// Common part of all materials.
