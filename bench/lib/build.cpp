@@ -1,6 +1,7 @@
 #include <lib/build.hpp>
 #include <lib/scene_parts.hpp>
 #include <limits>
+#include <taut/internal/local_origin.hpp>
 
 namespace taut::bench {
 namespace {
@@ -40,6 +41,11 @@ template <int D>
 struct Bounds {
   Vec<D> min, max;
   double tolerance = 0;
+
+  /// What coordinates here may be off by, as they were rounded.
+  double rounding() const {
+    return coordinate_rounding(std::max(min.cwiseAbs().maxCoeff(), max.cwiseAbs().maxCoeff()));
+  }
 };
 
 template <int D>
@@ -49,8 +55,8 @@ Bounds<D> bounds_of(const Scene& scene, const RunSpec& run, const SweepPoint& po
     bounds.min.setConstant(std::numeric_limits<double>::max());
     bounds.max = -bounds.min;
     for (const Vec<D>& X : cloud.X) {
-      bounds.min = bounds.min.cwiseMin(X);
-      bounds.max = bounds.max.cwiseMax(X);
+      bounds.min = bounds.min.cwiseMin(cloud.origin + X);
+      bounds.max = bounds.max.cwiseMax(cloud.origin + X);
     }
     bounds.tolerance = 0.25 * cloud.dx;
     return bounds;
@@ -60,7 +66,7 @@ Bounds<D> bounds_of(const Scene& scene, const RunSpec& run, const SweepPoint& po
   bounds.max = shape.max();
   // Cell-centred particles of a face lie half a cell inside it, and cells are no wider than 1.5 dx.
   const LatticeSpec lattice = lattice_of(run, point);
-  bounds.tolerance = (lattice.kind == Lattice::cell_centred ? 0.75 : 1e-6) * lattice.dx;
+  bounds.tolerance = (lattice.kind == Lattice::cell_centred ? 0.75 : 1e-6) * lattice.dx + bounds.rounding();
   return bounds;
 }
 
@@ -68,7 +74,7 @@ template <int D>
 Where<D> where_of(const Selection& selection, const Bounds<D>& bounds, bool beyond_face) {
   return [=](const Vec<D>& X) {
     for (const auto& [axis, interval] : selection.where) {
-      const double slack = 1e-9 * (bounds.max - bounds.min).maxCoeff();
+      const double slack = 1e-9 * (bounds.max - bounds.min).maxCoeff() + bounds.rounding();
       if (X[axis] < interval[0] - slack || X[axis] > interval[1] + slack) return false;
     }
     if (selection.on.empty()) return true;
@@ -128,7 +134,9 @@ void set_initial_state(Simulation<D>& simulation, const Scene& scene, const Boun
   simulation.set_displacement([at, bounds](const Vec<D>& X) {
     return at(X, [&](const InitialSpec& initial, Vec<D>& u) {
       if (!initial.stretch.empty())
-        u = (vec<D>(initial.stretch).array() - 1).matrix().cwiseProduct(X - bounds.min);
+        u = (vec<D>(initial.stretch).array() - 1)
+                .matrix()
+                .cwiseProduct(coordinate_difference<D>(X, bounds.min));
     });
   });
 }
@@ -143,7 +151,7 @@ std::shared_ptr<const Material<D>> build_material(const MaterialSpec& spec) {
 template <int D>
 double shortest_edge_of(const ShapeSpec& geometry) {
   const Shape<D> shape = at_place(geometry.place, "geometry", [&] { return make_shape<D>(geometry); });
-  return (shape.max() - shape.min()).minCoeff();
+  return coordinate_difference<D>(shape.max(), shape.min()).minCoeff();
 }
 
 }  // namespace

@@ -14,12 +14,10 @@ void Constraints<D>::prescribe(std::vector<Index> particles, int axis, Displacem
 }
 
 template <int D>
-void Constraints<D>::apply_to_positions(double t, const Field& X, Field& x) const {
+void Constraints<D>::apply_to_displacements(double t, const Field& X, Field& u) const {
   for (const Set& set : sets_) {
-    double* xs = x.component(set.axis);
-    const double* Xs = X.component(set.axis);
-    for (const Index i : set.particles)
-      xs[i] = set.displacement ? Xs[i] + set.displacement(X.vec<D>(i), t) : Xs[i];
+    double* us = u.component(set.axis);
+    for (const Index i : set.particles) us[i] = set.displacement ? set.displacement(X.vec<D>(i), t) : 0;
   }
 }
 

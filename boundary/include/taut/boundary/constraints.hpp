@@ -20,7 +20,7 @@ class Constraints {
   void fix(std::vector<Index> particles, int axis);
   void prescribe(std::vector<Index> particles, int axis, Displacement displacement);
 
-  void apply_to_positions(double t, const Field& X, Field& x) const;
+  void apply_to_displacements(double t, const Field& X, Field& u) const;
   /// Velocities of prescribed components are the central difference of their displacement.
   void apply_to_velocities(double t, const Field& X, Field& v) const;
   /// Constrained components carry no acceleration of their own, so that norms of it are out-of-balance forces.

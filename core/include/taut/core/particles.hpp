@@ -23,7 +23,8 @@ struct Particles {
   double dx = 0;             ///< nominal spacing [m]
   std::vector<Index> id;     ///< id[i]: the user's index of particle i
   std::vector<Index> place;  ///< place[id]: where the user's particle stands
-  Field X, x, v, a;          ///< reference and current position, velocity, acceleration; D components
+  Vec<D> origin = Vec<D>::Zero();  ///< of the coordinates X, see `Cloud::origin` [m]
+  Field X, u, v, a;                ///< reference position, displacement, velocity, acceleration; D components
   Field V;       ///< reference volume [m^D], its image's part included for particles on symmetry planes
   Field m;       ///< mass [kg] (per unit thickness in 2D, per unit area in 1D)
   Field m_flat;  ///< mass, repeated for each component: weights of norms; zero beyond n
@@ -37,13 +38,15 @@ struct Particles {
   std::vector<std::array<Index, 1 << D>> cells;
   std::vector<double> cell_share;
 
+  /// Where particle i stands in the reference configuration, in the user's coordinates.
+  Vec<D> reference_position(Index i) const { return origin + X.template vec<D>(static_cast<std::size_t>(i)); }
   /// The part of V that belongs to the modelled side of the symmetry planes.
   double modelled_share(Index i) const {
     return planes.empty() ? 1 : 1.0 / (1 << std::popcount(planes[static_cast<std::size_t>(i)]));
   }
 
   std::size_t bytes() const {
-    return X.bytes() + x.bytes() + v.bytes() + a.bytes() + V.bytes() + m.bytes() + m_flat.bytes() +
+    return X.bytes() + u.bytes() + v.bytes() + a.bytes() + V.bytes() + m.bytes() + m_flat.bytes() +
            (id.size() + place.size()) * sizeof(Index) + B.size() * sizeof(Vec<D>) + material.size() +
            planes.size() + cells.size() * sizeof(cells[0]) + cell_share.size() * sizeof(double);
   }
