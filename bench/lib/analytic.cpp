@@ -4,6 +4,7 @@
 #include <cmath>
 #include <lib/analytic.hpp>
 #include <lib/scene_parts.hpp>
+#include <taut/internal/local_origin.hpp>
 #include <taut/materials/hypoelastic_bar.hpp>
 
 namespace taut::bench {
@@ -76,7 +77,7 @@ Analytic bar_wave_incident(const Scene& scene, const SweepPoint& point, const Pr
          "[reference] bar_wave_incident: needs a box and a load on x_min or x_max with a history");
   double area = 1;
   for (std::size_t d = 1; d < scene.geometry.min.size(); ++d)
-    area *= scene.geometry.max[d] - scene.geometry.min[d];
+    area *= coordinate_difference(scene.geometry.max[d], scene.geometry.min[d]);
   const double outward = load->selection.on == "x_max" ? 1 : -1;
   const double sign = load->direction[0] * outward > 0 ? 1 : -1;
   return {sign * force_of(*load, point) / area, {}};
@@ -101,7 +102,7 @@ Analytic neo_hookean_stretch(const Scene& scene, const RunSpec& run, const Sweep
           axis_number(b.selection.on) == axis)
         growth += (b.selection.on.ends_with("_max") ? 1 : -1) * b.displacement *
                   (b.history ? b.history->factor(t) : 1);
-    return 1 + growth / (scene.geometry.max[i] - scene.geometry.min[i]);
+    return 1 + growth / coordinate_difference(scene.geometry.max[i], scene.geometry.min[i]);
   };
   const double mu = material.parameters.mu(), lambda = material.parameters.lambda();
   Analytic exact;
@@ -147,7 +148,7 @@ Analytic own_law_bar(const Scene& scene, const RunSpec& run, const SweepPoint& p
          "[reference] own_law_bar: needs a box in plane stress, a load on x_max, material hypoelastic, "
          "st_venant_kirchhoff or "
          "corotated_svk, and a probe of the displacement along x");
-  const double height = scene.geometry.max[1] - scene.geometry.min[1];
+  const double height = coordinate_difference(scene.geometry.max[1], scene.geometry.min[1]);
   const double stress = (load->direction[0] > 0 ? 1 : -1) * force_of(*load, point) / height;
   std::optional<double> stretch;
   if (svk) {
@@ -156,7 +157,7 @@ Analytic own_law_bar(const Scene& scene, const RunSpec& run, const SweepPoint& p
     stretch = state->stretch;
   }
   if (!stretch) return {};
-  return {(*stretch - 1) * (scene.geometry.max[0] - scene.geometry.min[0]), {}};
+  return {(*stretch - 1) * coordinate_difference(scene.geometry.max[0], scene.geometry.min[0]), {}};
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <lib/scene_parts.hpp>
 #include <limits>
 #include <taut/core/operators.hpp>
+#include <taut/internal/local_origin.hpp>
 
 namespace taut::bench {
 namespace {
@@ -42,6 +43,11 @@ struct Bounds {
   Vec<D> min, max;
   double tolerance = 0;
   double condition_tolerance = 0;  // of what conditions select: facets lie on the faces themselves
+
+  /// What coordinates here may be off by, as they were rounded.
+  double rounding() const {
+    return coordinate_rounding(std::max(min.cwiseAbs().maxCoeff(), max.cwiseAbs().maxCoeff()));
+  }
 };
 
 template <int D>
@@ -52,8 +58,8 @@ Bounds<D> bounds_of(const Scene& scene, const RunSpec& run, const SweepPoint& po
     bounds.min.setConstant(std::numeric_limits<double>::max());
     bounds.max = -bounds.min;
     const auto include = [&](const Vec<D>& X) {
-      bounds.min = bounds.min.cwiseMin(X);
-      bounds.max = bounds.max.cwiseMax(X);
+      bounds.min = bounds.min.cwiseMin(cloud.origin + X);
+      bounds.max = bounds.max.cwiseMax(cloud.origin + X);
     };
     for (const Vec<D>& X : cloud.X) include(X);
     if (facets)
@@ -67,8 +73,8 @@ Bounds<D> bounds_of(const Scene& scene, const RunSpec& run, const SweepPoint& po
   bounds.max = shape.max();
   // Cell-centred particles of a face lie half a cell inside it, and cells are no wider than 1.5 dx.
   const LatticeSpec lattice = lattice_of(run, point);
-  bounds.tolerance = (lattice.kind == Lattice::cell_centred ? 0.75 : 1e-6) * lattice.dx;
-  bounds.condition_tolerance = facets ? 1e-3 * cloud.dx : bounds.tolerance;
+  bounds.tolerance = (lattice.kind == Lattice::cell_centred ? 0.75 : 1e-6) * lattice.dx + bounds.rounding();
+  bounds.condition_tolerance = facets ? 1e-3 * cloud.dx + bounds.rounding() : bounds.tolerance;
   return bounds;
 }
 
@@ -76,7 +82,7 @@ template <int D>
 Where<D> where_of(const Selection& selection, const Bounds<D>& bounds, bool beyond_face) {
   return [=](const Vec<D>& X) {
     for (const auto& [axis, interval] : selection.where) {
-      const double slack = 1e-9 * (bounds.max - bounds.min).maxCoeff();
+      const double slack = 1e-9 * (bounds.max - bounds.min).maxCoeff() + bounds.rounding();
       if (X[axis] < interval[0] - slack || X[axis] > interval[1] + slack) return false;
     }
     if (selection.on.empty()) return true;
@@ -137,7 +143,9 @@ void set_initial_state(Simulation<D>& simulation, const Scene& scene, const Boun
   simulation.set_displacement([at, bounds](const Vec<D>& X) {
     return at(X, [&](const InitialSpec& initial, Vec<D>& u) {
       if (!initial.stretch.empty())
-        u = (vec<D>(initial.stretch).array() - 1).matrix().cwiseProduct(X - bounds.min);
+        u = (vec<D>(initial.stretch).array() - 1)
+                .matrix()
+                .cwiseProduct(coordinate_difference<D>(X, bounds.min));
     });
   });
 }
@@ -152,7 +160,7 @@ std::shared_ptr<const Material<D>> build_material(const MaterialSpec& spec) {
 template <int D>
 double shortest_edge_of(const ShapeSpec& geometry) {
   const Shape<D> shape = at_place(geometry.place, "geometry", [&] { return make_shape<D>(geometry); });
-  return (shape.max() - shape.min()).minCoeff();
+  return coordinate_difference<D>(shape.max(), shape.min()).minCoeff();
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <lib/reference.hpp>
 #include <lib/scene_keys.hpp>
 #include <taut/core/derived.hpp>
+#include <taut/internal/local_origin.hpp>
 
 namespace taut::bench {
 namespace {
@@ -25,7 +26,7 @@ class Sampler {
     double nearest = std::numeric_limits<double>::max();
     for (std::size_t i = 0; i < simulation.size(); ++i)
       nearest = std::min(nearest, (simulation.reference_position(i) - at_).norm());
-    const double slack = 1e-6 * std::pow(simulation.mass(0), 1.0 / D);
+    const double slack = 1e-6 * std::pow(simulation.mass(0), 1.0 / D) + coordinate_rounding(at_.norm());
     for (std::size_t i = 0; i < simulation.size(); ++i)
       if ((simulation.reference_position(i) - at_).norm() <= nearest + slack) near_.push_back(i);
   }

@@ -97,6 +97,11 @@ std::string panel(const CaseResult& c, const std::string& name, const Frame& fra
   const std::vector<double>& field = c.snapshot->fields.at(name);
   std::string data;
   const double cell = c.dx > 0 ? c.dx : 0.01 * (frame.x1 - frame.x0);
+  // Five digits of the frame, however far from the origin it lies.
+  const double furthest =
+      std::max({std::abs(frame.x0), std::abs(frame.x1), std::abs(frame.y0), std::abs(frame.y1)});
+  const double extent = std::max(frame.x1 - frame.x0, frame.y1 - frame.y0);
+  const int digits = 5 + std::max(0, static_cast<int>(std::log10(furthest / extent)));
   std::vector<std::pair<double, std::size_t>> depth;
   for (std::size_t i = 0; i < c.snapshot->x.size(); ++i)
     if (finite(c.snapshot->x[i]) && std::isfinite(field[i])) depth.emplace_back(c.snapshot->x[i][2], i);
@@ -105,7 +110,7 @@ std::string panel(const CaseResult& c, const std::string& name, const Frame& fra
   for (const auto& [z, i] : depth) {
     const auto& x = c.snapshot->x[i];
     if (x[0] < frame.x0 || x[0] > frame.x1 || x[1] < frame.y0 || x[1] > frame.y1) continue;
-    data += fmt::format("{:.5g} {:.5g} {:.4g}\n", x[0] * 1e3, x[1] * 1e3, field[i] * unit);
+    data += fmt::format("{:.{}g} {:.{}g} {:.4g}\n", x[0] * 1e3, digits, x[1] * 1e3, digits, field[i] * unit);
   }
   std::string lines;
   for (const auto& p : outline(c.scene->geometry)) lines += fmt::format("{} {}\n", p[0] * 1e3, p[1] * 1e3);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double value = sizeof(double);
 
-// The kick of a whole step and the drift: x, v and a are read, x and v written.
+// The kick of a whole step and the drift: u, v and a are read, u and v written.
 template <int D>
 constexpr double integrator_bytes = 5 * D* value;
 template <int D>
@@ -51,13 +51,13 @@ Traffic total_lagrangian_traffic(const Cloud<D>& cloud, const Method& method) {
   const auto adjoint = op.adjoint_f.empty() && op.adjoint_d.empty()
                            ? payload
                            : static_cast<double>(op.adjoint_f.bytes() + op.adjoint_d.bytes());
-  const auto matrices = static_cast<double>(op.M.bytes() + op.slice_code.bytes() + op.F0.bytes());
+  const auto matrices = static_cast<double>(op.M.bytes() + op.slice_code.bytes());
   const auto sums = static_cast<double>(op.sum.bytes() + op.slice_code.bytes());
   const double per_particle =  // weights and X, in both passes
       recomputed ? static_cast<double>(op.weight.bytes()) / n + D * value : 0;
 
   const double gradient_pass =
-      (list + payload + matrices) / n + per_particle + (D + 1 + D * D) * value;                    // x, V; Q
+      (list + payload + matrices) / n + per_particle + (D + 1 + D * D) * value;                    // u, V; Q
   const double force_pass = (list + adjoint + sums) / n + per_particle + (D * D + 1 + D) * value;  // Q, m; a
   // Recomputed, in both passes: differences, r^2, the kernel's table, scaling.
   constexpr double geometry = 5 * D + 10;
@@ -78,6 +78,7 @@ Traffic updated_lagrangian_traffic(const Cloud<D>& cloud, const Method& method, 
   const auto n = static_cast<double>(cloud.size());
   const double list = static_cast<double>(pairs.bytes() - static_cast<std::size_t>(pairs.slots())) / n;
   constexpr int S = sym_components<D>;
+  const double positions = 3 * D * value;   // X, u; x
   const double skin_check = 2 * D * value;  // x, place of the last build
   const double rates =
       list + (2 * D + 1 + 1 + S + 1) * value + (S + 1 + 1) * value;         // x, v, m, rho, s, rho; rates
@@ -89,7 +90,7 @@ Traffic updated_lagrangian_traffic(const Cloud<D>& cloud, const Method& method, 
   const double pair_flops = 2 * geometry + (D + D + 2 * D * D) + (S + D + 2 * D * D);
   constexpr double law[] = {15, 45, 90};  // rates and stress of the material in 1D, 2D, 3D
   const double particle_flops = 2 * D * D + law[D - 1] + 3 * S + 8;
-  return {skin_check + rates + evolved + stress + accelerations + rebuild + integrator_bytes<D>,
+  return {positions + skin_check + rates + evolved + stress + accelerations + rebuild + integrator_bytes<D>,
           pair_flops * static_cast<double>(pairs.pairs()) / n + particle_flops + integrator_flops<D>};
 }
 

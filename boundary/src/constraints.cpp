@@ -43,16 +43,14 @@ double velocity_of(const std::function<double(const Vec<D>&, double)>& displacem
 }  // namespace
 
 template <int D>
-void Constraints<D>::apply_to_positions(double t, const Field& X, Field& x) const {
+void Constraints<D>::apply_to_displacements(double t, const Field& X, Field& u) const {
   for (const Set& set : sets_) {
-    double* xs = x.component(set.axis);
-    const double* Xs = X.component(set.axis);
-    for (const Index i : set.particles)
-      xs[i] = set.displacement ? Xs[i] + set.displacement(X.vec<D>(i), t) : Xs[i];
+    double* us = u.component(set.axis);
+    for (const Index i : set.particles) us[i] = set.displacement ? set.displacement(X.vec<D>(i), t) : 0;
   }
   for (int d = 0; d < D; ++d)
     held_[static_cast<std::size_t>(d)].project(
-        x.component(d), [&](const Vec<D>& point, const Displacement& u) { return point[d] + (u ? u(point, t) : 0); });
+        u.component(d), [&](const Vec<D>& point, const Displacement& follow) { return follow ? follow(point, t) : 0; });
 }
 
 template <int D>

@@ -39,7 +39,7 @@ void take_cells(const Cloud<D>& cloud, const std::vector<typename MirrorMap<D>::
     if (std::none_of(p.planes.begin(), p.planes.end(), [&](std::uint8_t on) { return on >> plane.axis & 1; }))
       throw InputError(
           fmt::format("no particle lies on the symmetry plane {} = {:g}, where the body's cells end",
-                      "xyz"[plane.axis], plane.at));
+                      "xyz"[plane.axis], cloud.origin[plane.axis] + plane.at));
 }
 
 }  // namespace
@@ -63,13 +63,14 @@ Particles<D> assemble(const Cloud<D>& cloud, std::vector<std::shared_ptr<const M
     for (std::size_t i = 0; i < n; ++i) {
       const double beyond = (cloud.X[i][plane.axis] - plane.at) * (plane.side == 0 ? -1 : 1);
       if (beyond > on_plane * cloud.dx)
-        throw InputError(fmt::format("the symmetry plane {} = {:g} cuts the body: particle {} lies beyond it", "xyz"[plane.axis],
-                                     plane.at, i));
+        throw InputError(fmt::format("the symmetry plane {} = {:g} cuts the body: particle {} lies beyond it",
+                                     "xyz"[plane.axis], cloud.origin[plane.axis] + plane.at, i));
     }
 
   Particles<D> p;
   p.n = static_cast<Index>(n);
   p.dx = cloud.dx;
+  p.origin = cloud.origin;
   p.materials = std::move(materials);
 
   Field unordered(n, D);
@@ -92,7 +93,7 @@ Particles<D> assemble(const Cloud<D>& cloud, std::vector<std::shared_ptr<const M
 
   const auto total = static_cast<std::size_t>(p.total);
   p.X = Field(total, D);
-  p.v = p.a = p.m_flat = Field(total, D);
+  p.u = p.v = p.a = p.m_flat = Field(total, D);
   p.V = p.m = Field(total, 1);
   // Padding stands far from everything: no loop over whole packs mistakes it for a neighbour.
   if (!cloud.spacing.empty()) p.spacing = Field(total, 1);
@@ -125,7 +126,6 @@ Particles<D> assemble(const Cloud<D>& cloud, std::vector<std::shared_ptr<const M
   p.mirror.scalars(p.V);
   if (!p.spacing.empty()) p.mirror.scalars(p.spacing);
   p.mirror.scalars(p.m);
-  p.x = p.X;
   return p;
 }
 

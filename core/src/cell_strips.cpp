@@ -98,7 +98,7 @@ void CellStrips<D>::find_touches(const Particles<D>& p) {
   for (std::size_t i = 0; i < first.size(); ++i)
     if (first[i] == none)
       throw InputError(fmt::format("particle {} at {} is a corner of no cell", p.id[i],
-                                   describe<D>(p.X.template vec<D>(i))));
+                                   describe<D>(p.reference_position(static_cast<Index>(i)))));
   const auto collect = [&](const std::vector<Index>& touch, std::vector<Span>& spans,
                            std::vector<Index>& begin) {
     begin.push_back(0);

@@ -11,6 +11,7 @@
 #include <string>
 #include <taut/core/error.hpp>
 #include <taut/core/geometry.hpp>
+#include <taut/internal/local_origin.hpp>
 
 namespace taut {
 namespace {
@@ -187,6 +188,7 @@ Cloud<D> read_cloud(const std::filesystem::path& file, double dx) {
       lines.fail("more particles than an index can count");
   }
   if (cloud.size() == 0) lines.fail("no particles after the header");
+  make_local(cloud);
 
   if (dx == 0) {
     if (cloud.size() == 1) lines.fail("the spacing dx must be given for a single particle");

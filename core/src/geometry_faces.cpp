@@ -35,8 +35,8 @@ std::function<bool(const Vec<D>&)> plane_of(const Cloud<D>& cloud, std::string_v
     if (cloud.extra.empty() || !cloud.extra[owner]) outermost = std::max(outermost, sign * X[axis]);
   }
   if (!std::isfinite(outermost)) throw InputError(fmt::format("face {} of an empty cloud", face));
-  return [axis, at = sign * outermost, tolerance](const Vec<D>& X) {
-    return std::abs(X[axis] - at) <= tolerance;
+  return [axis, origin = cloud.origin[axis], at = sign * outermost, tolerance](const Vec<D>& X) {
+    return std::abs((X[axis] - origin) - at) <= tolerance;
   };
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <taut/core/error.hpp>
 #include <taut/core/geometry.hpp>
+#include <taut/internal/local_origin.hpp>
 
 namespace taut {
 namespace {
@@ -43,17 +44,30 @@ void check(const LatticeOptions& o, int dimension) {
     }
 }
 
+// The length of an edge: the multiple of dx that the coordinates of its ends leave possible, if there is one.
+double edge_length(double min, double max, double dx) {
+  const double length = max - min, multiple = std::round(length / dx) * dx;
+  const double rounding = coordinate_rounding(min) + coordinate_rounding(max);
+  return multiple > 0 && std::abs(multiple - length) <= rounding ? multiple : coordinate_difference(max, min);
+}
+
 // The lattice: `cells` across the body's box, `layers` before and behind them, and one empty cell around all
 // so that the stencils below need no bounds.
 template <int D>
 struct Grid {
   Place<D> cells{}, before{}, size{},
       stride{};  // `size` with layers, without the empty rim; `stride` with it
-  Vec<D> min, max, spacing;
+  Vec<D> min, max, spacing;  // relative to `origin`
+  Vec<D> origin = Vec<D>::Zero();
   double cell_volume = 1;
   std::int64_t fill_size = 1;
 
   Grid(const Shape<D>& shape, const LatticeOptions& o) : min(shape.min()), max(shape.max()) {
+    if (is_far<D>(min, max)) {
+      origin = min;
+      for (int d = 0; d < D; ++d) max[d] = edge_length(min[d], max[d], o.dx);
+      min.setZero();
+    }
     double count = 1;
     for (std::size_t d = 0; d < D; ++d) {
       const auto e = static_cast<Eigen::Index>(d);
@@ -131,7 +145,7 @@ std::vector<Fill> fill_cells(const Grid<D>& grid, const Shape<D>& shape, int sam
           const auto axis = static_cast<std::size_t>(d);
           X[d] = points[axis][static_cast<std::size_t>(at[axis] * samples + rest % samples)];
         }
-        inside += shape.contains(X);
+        inside += shape.contains(grid.origin + X);
       }
       Place<D> place = at;
       for (std::size_t d = 0; d < D; ++d) place[d] += grid.before[d];
@@ -321,6 +335,7 @@ Cloud<D> make_cloud(const Shape<D>& shape, const LatticeOptions& options) {
   const bool divides = ((grid.spacing.array() - options.dx).abs() <= 1e-9 * options.dx).all();
   Cloud<D> cloud;
   cloud.dx = divides ? options.dx : std::pow(grid.cell_volume, 1.0 / D);
+  cloud.origin = grid.origin;
   cloud.X.resize(n);
   cloud.V.resize(n);
   if (nodes) cloud.B.resize(n);

@@ -100,7 +100,7 @@ template <int D>
       fmt::format("corrected operator: the correction matrix of particle {} at {} is singular: its {} "
                   "neighbour(s) do not span {} "
                   "dimension(s). Enlarge support_dx, refine dx, or thicken the body there",
-                  p.id[a], describe<D>(p.X.template vec<D>(a)), neighbours, D));
+                  p.id[a], describe<D>(p.reference_position(a)), neighbours, D));
 }
 
 // Matrices of one slice as the loops want them: M, then the sums.
@@ -146,7 +146,6 @@ void fill_matrices(bool corrected, const Particles<D>& p, const PairList& pairs,
     op.M = Field(total, D * D);
     op.sum = Field(total, D);
   }
-  if (!corrected) op.F0 = Field(total, D * D);
   const Columns<D> X(p.X);
   const double* V = p.V.component(0);
   std::atomic<Index> singular{p.n};
@@ -160,11 +159,7 @@ void fill_matrices(bool corrected, const Particles<D>& p, const PairList& pairs,
         const Index a = s * lanes + l;
         for (int d = 0; d < D; ++d) c[D * D + d][l] = m.sum[d][l];
         if (!corrected) {
-          for (int k = 0; k < D * D; ++k) {
-            const double one = k % (D + 1) == 0;
-            c[k][l] = one / V[a];
-            op.F0.component(k)[a] = one - m.outer[k][l] / V[a];
-          }
+          for (int d = 0; d < D; ++d) c[d * (D + 1)][l] = 1 / V[a];
         } else if (!invert_moment<D>(m, l, c)) {
           Index seen = singular.load();
           while (a < seen && !singular.compare_exchange_weak(seen, a)) {

@@ -108,7 +108,7 @@ class QuadraticFit {
         "quadratic operator: the {} neighbour(s) of particle {} at {} do not determine a quadratic "
         "in {} dimension(s), which takes {} in general position. Enlarge support_dx (2.4 does on "
         "lattices), refine dx, or thicken the body there",
-        neighbours, p_.id[static_cast<std::size_t>(a)], describe<D>(p_.X.template vec<D>(a)), D,
+        neighbours, p_.id[static_cast<std::size_t>(a)], describe<D>(p_.reference_position(a)), D,
         static_cast<int>(terms)));
   }
 

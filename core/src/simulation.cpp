@@ -9,6 +9,7 @@
 #include <taut/core/operators.hpp>
 #include <taut/integrators/integrator.hpp>
 #include <taut/internal/assembly.hpp>
+#include <taut/internal/local_origin.hpp>
 #include <taut/internal/simulation_impl.hpp>
 #include <taut/neighbors/search.hpp>
 
@@ -46,7 +47,7 @@ std::vector<Index> SimulationImpl<D>::select_particles(const Where<D>& where, co
   must_be_open(what);
   std::vector<Index> ids;
   for (std::size_t i = 0; i < cloud.size(); ++i)
-    if (where(cloud.X[i])) ids.push_back(static_cast<Index>(i));
+    if (where(reference_position(i))) ids.push_back(static_cast<Index>(i));
   return ids;
 }
 template <int D>
@@ -56,7 +57,7 @@ auto SimulationImpl<D>::select(const Where<D>& where, const char* what) const ->
   if (!chosen.empty())
     for (const Index i : selected.particles) chosen[static_cast<std::size_t>(i)] = 1;
   for (std::size_t f = 0; f < cloud.facets.size(); ++f)
-    if (!chosen[static_cast<std::size_t>(cloud.facets[f].owner)] && where(cloud.facets[f].centre))
+    if (!chosen[static_cast<std::size_t>(cloud.facets[f].owner)] && where(cloud.origin + cloud.facets[f].centre))
       selected.facets.push_back(static_cast<Index>(f));
   if (selected.particles.empty() && selected.facets.empty())
     throw InputError(fmt::format("{} selects no particle", what));
@@ -106,6 +107,7 @@ Simulation<D>::Simulation(Cloud<D> cloud, std::shared_ptr<const Material<D>> mat
   if (!needs_areas(method.operators)) cloud.facets = {};
   impl_->material.assign(cloud.size(), 0);
   impl_->cloud = std::move(cloud);
+  make_local(impl_->cloud);
   impl_->materials.push_back(std::move(material));
   impl_->method = std::move(method);
 }
@@ -170,6 +172,11 @@ void Simulation<D>::prescribe(const Where<D>& where, int axis,
 template <int D>
 void SimulationImpl<D>::hold(const Selected& selected, int axis,
                              typename Constraints<D>::Displacement displacement) {
+  // Conditions know the user's coordinates.
+  if (displacement)
+    displacement = [f = std::move(displacement), origin = cloud.origin](const Vec<D>& X, double t) {
+      return f(origin + X, t);
+    };
   if (!selected.particles.empty()) {
     if (displacement)
       constraints.prescribe(places(selected.particles), axis, displacement);
@@ -273,9 +280,14 @@ void Simulation<D>::symmetry_plane(int axis, double at) {
   impl_->must_be_open("symmetry_plane");
   if (axis < 0 || axis >= D)
     throw InputError(fmt::format("symmetry_plane: axis {} is not one of 0 … {}", axis, D - 1));
-  double sum = 0;
-  for (const Vec<D>& X : impl_->cloud.X) sum += X[axis] - at;
-  impl_->planes.push_back({axis, at, sum > 0 ? 0 : 1});
+  const Cloud<D>& cloud = impl_->cloud;
+  double local = coordinate_difference(at, cloud.origin[axis]), sum = 0;
+  for (const Vec<D>& X : cloud.X) sum += X[axis] - local;
+  // Particles that are on the plane but for the rounding of its coordinate are on the plane.
+  if (cloud.origin[axis] != 0)
+    for (const Vec<D>& X : cloud.X)
+      if (std::abs(X[axis] - local) <= coordinate_rounding(at)) local = X[axis];
+  impl_->planes.push_back({axis, local, sum > 0 ? 0 : 1});
 }
 
 template <int D>
@@ -342,15 +354,13 @@ void Simulation<D>::prepare() {
   }
   s.constraints.finish(s.particles.m);
   if (s.initial_displacement)
-    for (Index i = 0; i < s.particles.n; ++i) {
-      const Vec<D> X = s.particles.X.template vec<D>(i);
-      s.particles.x.template set_vec<D>(i, X + s.initial_displacement(X));
-    }
-  if (!s.particles.mirror.empty()) s.particles.mirror.positions(s.particles.x);
+    for (Index i = 0; i < s.particles.n; ++i)
+      s.particles.u.template set_vec<D>(i, s.initial_displacement(s.particles.reference_position(i)));
+  if (!s.particles.mirror.empty()) s.particles.mirror.vectors(s.particles.u);
   s.formulation = make_formulation<D>({s.particles, s.constraints, s.loads, s.method});
   if (s.initial_velocity)
     for (Index i = 0; i < s.particles.n; ++i)
-      s.particles.v.template set_vec<D>(i, s.initial_velocity(s.particles.X.template vec<D>(i)));
+      s.particles.v.template set_vec<D>(i, s.initial_velocity(s.particles.reference_position(i)));
   s.setup_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
@@ -391,16 +401,17 @@ double Simulation<D>::setup_seconds() const {
 }
 template <int D>
 Vec<D> Simulation<D>::reference_position(std::size_t id) const {
-  return impl_->cloud.X.at(id);
+  return impl_->reference_position(id);
 }
 
 template <int D>
 Vec<D> Simulation<D>::position(std::size_t id) const {
-  return impl_->formulation ? impl_->particles.x.template vec<D>(impl_->place(id)) : reference_position(id);
+  return impl_->cloud.origin + (impl_->cloud.X.at(id) + displacement(id));
 }
 template <int D>
 Vec<D> Simulation<D>::displacement(std::size_t id) const {
-  return position(id) - reference_position(id);
+  if (!impl_->formulation) return Vec<D>::Zero();
+  return impl_->particles.u.template vec<D>(static_cast<std::size_t>(impl_->place(id)));
 }
 
 namespace {
@@ -453,21 +464,23 @@ template <int D>
 Vec<D> Simulation<D>::displacement_at(const Vec<D>& X) const {
   // Nearest particles first, until a plane through them is well determined.
   const double dx = impl_->cloud.dx;
+  const Vec<D> at = coordinate_difference<D>(X, impl_->cloud.origin);
   std::vector<std::pair<double, std::size_t>> near;
   for (std::size_t i = 0; i < size(); ++i) {
-    const double r2 = (impl_->cloud.X[i] - X).squaredNorm();
+    const double r2 = (impl_->cloud.X[i] - at).squaredNorm();
     if (r2 < 9 * dx * dx) near.emplace_back(r2, i);
   }
   std::sort(near.begin(), near.end());
   if (near.empty()) throw InputError("displacement_at: no particle within three spacings of the point");
-  if (near.front().first < 1e-12 * dx * dx) return displacement(near.front().second);
+  const double same = std::max(1e-6 * dx, coordinate_rounding(X.norm()));
+  if (near.front().first < same * same) return displacement(near.front().second);
   Fixed<D + 1> normal = Fixed<D + 1>::Zero();
   Fixed<D + 1, D> right = Fixed<D + 1, D>::Zero();
   for (const auto& [r2, i] : near) {
     const double q2 = r2 / (9 * dx * dx);
     const double weight = (1 - q2) * (1 - q2) * (1 - q2) * (1 - q2) / (r2 / (dx * dx) + 0.05);
     Fixed<D + 1, 1> basis;
-    basis << 1, (impl_->cloud.X[i] - X) / dx;
+    basis << 1, (impl_->cloud.X[i] - at) / dx;
     normal += weight * basis * basis.transpose();
     right += weight * basis * displacement(i).transpose();
   }

@@ -55,8 +55,10 @@ bool Loop<D>::intact() {
   b.what = failure->what;
   b.particle = s_.particles.id[at];
   for (int d = 0; d < D; ++d) {
-    b.X[static_cast<std::size_t>(d)] = s_.particles.X.component(d)[at];
-    b.x[static_cast<std::size_t>(d)] = s_.particles.x.component(d)[at];
+    const auto axis = static_cast<std::size_t>(d);
+    const double X = s_.particles.X.component(d)[at], origin = s_.particles.origin[d];
+    b.X[axis] = origin + X;
+    b.x[axis] = origin + (X + s_.particles.u.component(d)[at]);
   }
   b.time = s_.time;
   b.step = result.steps;

@@ -12,7 +12,7 @@ namespace {
 /// Total Lagrangian form whose stresses live on the bonds between neighbours (Breitzman & Dayal, J. Mech.
 /// Phys. Solids 110, 2018; Chen, Mech. Res. Commun. 90, 2018). The deformation gradient of a bond is the mean
 /// of its ends', put right along the bond, where the motion of its ends says it exactly:
-///   F_ab = Fm + (x_ab - Fm X_ab) (x) X_ab / |X_ab|^2,   Fm = 1/2 (F_a + F_b).
+///   H_ab = Hm + (u_ab - Hm X_ab) (x) X_ab / |X_ab|^2,   Hm = 1/2 (H_a + H_b),   F = I + H.
 /// No motion of neighbours goes unseen, so there are no zero-energy modes, and no coefficient. The energy is
 ///   sum_a V_a / n_a sum_b psi_a(F_ab),   n_a the number of a's neighbours,
 /// hence each volume counts once; forces are its exact derivative: with P_ab = (V_a / n_a P_a + V_b / n_b
@@ -37,7 +37,7 @@ class TlBondAssociated final : public TotalLagrangian<D> {
 
  public:
   explicit TlBondAssociated(const FormulationSetup<D>& setup)
-      : Base(setup), F_(static_cast<std::size_t>(p_.total), D * D) {
+      : Base(setup), H_(static_cast<std::size_t>(p_.total), D * D) {
     if (setup.method.zero_energy_control > 0)
       throw InputError("tl_bond_associated has no zero-energy modes: zero_energy_control must be 0");
     share_volumes();
@@ -46,18 +46,17 @@ class TlBondAssociated final : public TotalLagrangian<D> {
   }
 
   void update_accelerations(double t) override {
-    if (!p_.mirror.empty()) p_.mirror.positions(p_.x);
-    const auto stresses = [this](std::size_t m, int n, const double* F, double* P) {
-      materials_[m]->stress({n, chunk, F, P, nullptr});
-    };
-    const Seen seen = accelerations(Columns<D>(p_.x), true, stresses);
+    if (!p_.mirror.empty()) p_.mirror.vectors(p_.u);
+    const Seen seen = accelerations(Columns<D>(p_.u), [this](std::size_t m, const StressBlock<D>& block) {
+      materials_[m]->stress(block);
+    });
     this->stretch_ = seen.bounds;
     if (seen.inverted < p_.n) this->fail_inverted(seen.inverted);
     this->finish_accelerations(t);
   }
 
   double strain_energy() const override;
-  std::size_t bytes() const override { return Base::bytes() + F_.bytes() + share_.bytes(); }
+  std::size_t bytes() const override { return Base::bytes() + H_.bytes() + share_.bytes(); }
 
  private:
   /// Up to eight slots of a slice, laid out for the materials.
@@ -65,6 +64,7 @@ class TlBondAssociated final : public TotalLagrangian<D> {
     std::int64_t first;
     int count;
     alignas(64) double F[D * D * chunk];
+    alignas(64) double H_diagonal[D * chunk];
     Pack X[slots][D];
     Pack inverse[slots];  ///< 1 / |X|^2, zero in lanes without a pair
     Pack volume[slots];   ///< of the bonds whose stress is asked for
@@ -78,22 +78,22 @@ class TlBondAssociated final : public TotalLagrangian<D> {
   TAUT_INLINE static Pack weighted(Pack volume, Pack value) { return volume != 0 ? volume * value : pack(0); }
   void share_volumes();
   template <class Payload>
-  void gradient_pass(const Payload& payload, const Columns<D>& x, bool offset);
+  void gradient_pass(const Payload& payload, const Columns<D>& u);
   // Calls f(bonds) for all slots of slice s, some at a time.
   template <class Use>
-  void for_bonds(Index s, const Columns<D>& x, const Columns<D * D>& F, Bonds& bonds, Use&& f) const;
+  void for_bonds(Index s, const Columns<D>& u, const Columns<D * D>& H, Bonds& bonds, Use&& f) const;
   // The part of the bonds' volumes that is of material m, both ends' or the slice's own; false where all is
   // of other materials.
   bool volumes(Index s, std::size_t m, bool both, Bonds& bonds) const;
   template <class Stresses>
-  Seen bond_pass(const Columns<D>& x, const Stresses& stresses);
+  Seen bond_pass(const Columns<D>& u, const Stresses& stresses);
   template <class Payload>
   void force_pass(const Payload& payload);
   template <class Stresses>
-  Seen accelerations(const Columns<D>& x, bool offset, const Stresses& stresses);
+  Seen accelerations(const Columns<D>& u, const Stresses& stresses);
   double stiffest_mode(const LawsAtRest& laws);
 
-  Field F_;
+  Field H_;      ///< F - I
   Field share_;  ///< for each material V_a / n_a of its particles, zero of others
 };
 
@@ -112,21 +112,20 @@ void TlBondAssociated<D>::share_volumes() {
 
 template <int D>
 template <class Payload>
-void TlBondAssociated<D>::gradient_pass(const Payload& payload, const Columns<D>& x, bool offset) {
+void TlBondAssociated<D>::gradient_pass(const Payload& payload, const Columns<D>& u) {
 #pragma omp parallel for schedule(static) if (p_.n > parallel_from)
   for (Index s = 0; s < groups_.slices(); ++s) {
-    Pack F[D * D];
-    prefetch_neighbours(pairs_, s, x, payload);
-    gradient_of_slice<D>(s, pairs_, payload, x, {op_, s}, F);
-    if (offset) this->add_offset(s, F);
-    if ((s + 1) * lanes > p_.n) this->fill_padding(s, F);
-    for (int c = 0; c < D * D; ++c) store(F_.component(c) + s * lanes, F[c]);
+    Pack H[D * D];
+    prefetch_neighbours(pairs_, s, u, payload);
+    gradient_of_slice<D>(s, pairs_, payload, u, {op_, s}, H);
+    if ((s + 1) * lanes > p_.n) this->fill_padding(s, H);
+    for (int c = 0; c < D * D; ++c) store(H_.component(c) + s * lanes, H[c]);
   }
 }
 
 template <int D>
 template <class Use>
-void TlBondAssociated<D>::for_bonds(Index s, const Columns<D>& x, const Columns<D * D>& F, Bonds& bonds,
+void TlBondAssociated<D>::for_bonds(Index s, const Columns<D>& u, const Columns<D * D>& H, Bonds& bonds,
                                     Use&& f) const {
   const Columns<D> X(p_.X);
   const Index i = s * lanes;
@@ -145,17 +144,17 @@ void TlBondAssociated<D>::for_bonds(Index s, const Columns<D>& x, const Columns<
     bonds.inverse[j] = inverse;
     // Lanes without a pair do as their particle does.
     for (int c = 0; c < D * D; ++c) {
-      const Pack own = load(F.c[c] + i);
-      mean[c] = pair ? 0.5 * (own + at(F.c[c])) : own;
+      const Pack own = load(H.c[c] + i);
+      mean[c] = pair ? 0.5 * (own + at(H.c[c])) : own;
     }
     for (int d = 0; d < D; ++d) {
-      Pack off = at(x.c[d]) - load(x.c[d] + i);
+      Pack off = at(u.c[d]) - load(u.c[d] + i);
       for (int e = 0; e < D; ++e) off -= mean[d * D + e] * Xab[e];
       off *= inverse;
       off = pair ? off : pack(0);
-      for (int e = 0; e < D; ++e)
-        store(bonds.F + (d * D + e) * chunk + j * lanes, mean[d * D + e] + off * Xab[e]);
+      for (int e = 0; e < D; ++e) mean[d * D + e] += off * Xab[e];
     }
+    deform<D>(mean, chunk, bonds.F + j * lanes, bonds.H_diagonal + j * lanes);
     if (bonds.count == slots || k + 1 == pairs_.begin(s + 1)) {
       f(bonds);
       bonds.first = k + 1;
@@ -183,8 +182,8 @@ bool TlBondAssociated<D>::volumes(Index s, std::size_t m, bool both, Bonds& bond
 // Q_a of all particles, and the forces along bonds in place of the accelerations.
 template <int D>
 template <class Stresses>
-auto TlBondAssociated<D>::bond_pass(const Columns<D>& x, const Stresses& stresses) -> Seen {
-  const Columns<D * D> F(F_);
+auto TlBondAssociated<D>::bond_pass(const Columns<D>& u, const Stresses& stresses) -> Seen {
+  const Columns<D * D> H(H_);
   Index inverted = p_.n;
   StretchExtremes<D> extremes;
 #pragma omp parallel if (p_.n > parallel_from)
@@ -197,8 +196,8 @@ auto TlBondAssociated<D>::bond_pass(const Columns<D>& x, const Stresses& stresse
       for (auto& c : force) c = pack(0);
       for (auto& c : moment) c = pack(0);
       Bonds all;
-      prefetch_neighbours(pairs_, s, F);
-      for_bonds(s, x, F, all, [&](Bonds& bonds) {
+      prefetch_neighbours(pairs_, s, H);
+      for_bonds(s, u, H, all, [&](Bonds& bonds) {
         PackMask bad{};
         for (int j = 0; j < bonds.count; ++j) {
           Pack f[D * D];
@@ -210,7 +209,7 @@ auto TlBondAssociated<D>::bond_pass(const Columns<D>& x, const Stresses& stresse
         alignas(64) double P[D * D * chunk];
         for (std::size_t m = 0; m < materials_.size(); ++m) {
           if (!volumes(s, m, true, bonds)) continue;
-          stresses(m, bonds.count * lanes, bonds.F, P);
+          stresses(m, StressBlock<D>{bonds.count * lanes, chunk, bonds.F, P, nullptr, bonds.H_diagonal});
           for (int j = 0; j < bonds.count; ++j)
             for (int d = 0; d < D; ++d) {
               Pack row[D], along = pack(0);
@@ -258,14 +257,13 @@ void TlBondAssociated<D>::force_pass(const Payload& payload) {
   }
 }
 
-// Of positions, or of displacements: without F's offset.
 template <int D>
 template <class Stresses>
-auto TlBondAssociated<D>::accelerations(const Columns<D>& x, bool offset, const Stresses& stresses) -> Seen {
+auto TlBondAssociated<D>::accelerations(const Columns<D>& u, const Stresses& stresses) -> Seen {
   return with_payload<D>(op_, pairs_, p_.X, [&](const auto& payload) {
-    gradient_pass(payload, x, offset);
-    if (!p_.mirror.empty()) p_.mirror.tensors(F_);
-    const Seen seen = bond_pass(x, stresses);
+    gradient_pass(payload, u);
+    if (!p_.mirror.empty()) p_.mirror.tensors(H_);
+    const Seen seen = bond_pass(u, stresses);
     if (!p_.mirror.empty()) p_.mirror.tensors(Q_);
     force_pass(payload);
     return seen;
@@ -275,25 +273,25 @@ auto TlBondAssociated<D>::accelerations(const Columns<D>& x, bool offset, const 
 template <int D>
 double TlBondAssociated<D>::strain_energy() const {
   this->need_energies();
-  const Columns<D> x(p_.x);
+  const Columns<D> u(p_.u);
   Field gradients(static_cast<std::size_t>(p_.total), D * D);
   for (Index s = 0; s < groups_.slices(); ++s) {
-    Pack F[D * D];
-    this->gradient(s, p_.x, F);
-    if ((s + 1) * lanes > p_.n) this->fill_padding(s, F);
-    for (int c = 0; c < D * D; ++c) store(gradients.component(c) + s * lanes, F[c]);
+    Pack H[D * D];
+    this->gradient(s, p_.u, H);
+    if ((s + 1) * lanes > p_.n) this->fill_padding(s, H);
+    for (int c = 0; c < D * D; ++c) store(gradients.component(c) + s * lanes, H[c]);
   }
   if (!p_.mirror.empty()) p_.mirror.tensors(gradients);
-  const Columns<D * D> F(gradients);
+  const Columns<D * D> H(gradients);
   std::vector<double> energy(static_cast<std::size_t>(groups_.slices()), 0.0);
 #pragma omp parallel for schedule(static) if (p_.n > parallel_from)
   for (Index s = 0; s < groups_.slices(); ++s) {
     Bonds all;
-    for_bonds(s, x, F, all, [&](Bonds& bonds) {
+    for_bonds(s, u, H, all, [&](Bonds& bonds) {
       alignas(64) double P[D * D * chunk], e[chunk];
       for (std::size_t m = 0; m < materials_.size(); ++m) {
         if (!volumes(s, m, false, bonds)) continue;
-        materials_[m]->stress({bonds.count * lanes, chunk, bonds.F, P, e});
+        materials_[m]->stress({bonds.count * lanes, chunk, bonds.F, P, e, bonds.H_diagonal});
         for (int j = 0; j < bonds.count; ++j) {
           const Pack e_of_bond = weighted(bonds.volume[j], load(e + j * lanes));
           for (int l = 0; l < lanes && s * lanes + l < p_.n; ++l)
@@ -310,15 +308,15 @@ double TlBondAssociated<D>::strain_energy() const {
 // Largest eigenvalue of M^-1 K of the body at rest.
 template <int D>
 double TlBondAssociated<D>::stiffest_mode(const LawsAtRest& laws) {
-  const auto stresses = [&laws](std::size_t m, int n, const double* H, double* P) {
+  const auto stresses = [&laws](std::size_t m, const StressBlock<D>& block) {
     // Of opposite sign, so that what is left in the accelerations is M^-1 K y.
     const auto& law = laws[m];
     const IsotropicStiffness<double> opposite{-law.trace, -law.gradient, -law.transpose};
-    opposite.template stress<D>({n, chunk, H, P, nullptr});
+    opposite.template stress<D>(block);
   };
   const double eigenvalue = largest_eigenvalue<D>(p_.n, p_.total, p_.m, p_.a, [&](Field& y) {
     if (!p_.mirror.empty()) p_.mirror.vectors(y);
-    accelerations(Columns<D>(y), false, stresses);
+    accelerations(Columns<D>(y), stresses);
   });
   std::fill(p_.a.flat().begin(), p_.a.flat().end(), 0.0);
   return eigenvalue;

@@ -12,11 +12,10 @@ namespace taut {
 namespace {
 
 /// Displacement-based total Lagrangian form (Kistner 2010 ch. 5; Tran-Duc et al. 2023, 2.3): F from
-/// positions, P from the material, forces by the adjoint of the gradient.
+/// displacements, P from the material, forces by the adjoint of the gradient.
 template <int D>
 class TlDisplacement final : public TotalLagrangian<D> {
   using Base = TotalLagrangian<D>;
-  using Base::add_offset;
   using Base::groups_;
   using Base::materials_;
   using Base::op_;
@@ -43,7 +42,7 @@ class TlDisplacement final : public TotalLagrangian<D> {
   void mirror_tensors() {
     if (p_.mirror.empty()) return;
     p_.mirror.tensors(Q_);
-    if (control_) p_.mirror.tensors(control_->deformation());
+    if (control_) p_.mirror.tensors(control_->gradients());
   }
   template <class Payload>
   void gradient_pass(const Payload& payload);
@@ -57,7 +56,7 @@ class TlDisplacement final : public TotalLagrangian<D> {
 template <int D>
 template <class Payload>
 void TlDisplacement<D>::gradient_pass(const Payload& payload) {
-  const Columns<D> x(p_.x);
+  const Columns<D> u(p_.u);
   const double* V = p_.V.component(0);
   double* Q[D * D];
   for (int c = 0; c < D * D; ++c) Q[c] = Q_.component(c);
@@ -68,24 +67,24 @@ void TlDisplacement<D>::gradient_pass(const Payload& payload) {
     StretchExtremes<D> mine;
 #pragma omp for schedule(static) reduction(min : inverted)
     for (Index c = 0; c < groups_.chunks(); ++c) {
-      alignas(64) double F[D * D * chunk];
+      alignas(64) double F[D * D * chunk], H_diagonal[D * chunk];
       const Index first = groups_.first_slice(c), last = groups_.last_slice(c);
       PackMask bad{};
       for (Index s = first; s < last; ++s) {
         Pack f[D * D];
-        prefetch_neighbours(pairs_, s, x, payload);
-        gradient_of_slice<D>(s, pairs_, payload, x, {op_, s}, f);
-        add_offset(s, f);
+        prefetch_neighbours(pairs_, s, u, payload);
+        gradient_of_slice<D>(s, pairs_, payload, u, {op_, s}, f);
         if ((s + 1) * lanes > p_.n) this->fill_padding(s, f);
-        bad |= ~(mine.add(f) > 0);
-        for (int k = 0; k < D * D; ++k) store(F + k * chunk + (s - first) * lanes, f[k]);
         if (control_) control_->keep(s, f);
+        const Index at = (s - first) * lanes;
+        deform<D>(f, chunk, F + at, H_diagonal + at);
+        bad |= ~(mine.add(f) > 0);
       }
       if (any(bad)) inverted = std::min(inverted, first_inverted(first, last, F));
       alignas(64) double P_of_chunk[D * D * chunk];
       const int n = (last - first) * lanes;
       groups_.template call<D * D>(c, P_of_chunk, [&](std::size_t m, double* P) {
-        materials_[m]->stress({n, chunk, F, P, nullptr});
+        materials_[m]->stress({n, chunk, F, P, nullptr, H_diagonal});
       });
       for (Index s = first; s < last; ++s) {
         const Index i = s * lanes;
@@ -97,7 +96,7 @@ void TlDisplacement<D>::gradient_pass(const Payload& payload) {
           for (int j = 0; j < D; ++j) row[j] = load(P + (d * D + j) * chunk);
           for (int e = 0; e < D; ++e) store(Q[d * D + e] + i, of.times_matrix(row, e) * Vi);
         }
-        if (control_) control_->add_stress(s, x, of, Q_);
+        if (control_) control_->add_stress(s, u, of, Q_);
       }
     }
 #pragma omp critical
@@ -123,7 +122,7 @@ Index TlDisplacement<D>::first_inverted(Index first, Index last, const double* F
 template <int D>
 template <class Payload>
 void TlDisplacement<D>::force_pass(const Payload& payload) {
-  const Columns<D> x(p_.x);
+  const Columns<D> u(p_.u);
   const Columns<D * D> Q(Q_);
   const double* m = p_.m.component(0);
   double* a[D];
@@ -133,7 +132,7 @@ void TlDisplacement<D>::force_pass(const Payload& payload) {
     Pack force[D];
     prefetch_neighbours(pairs_, s, Q, payload);
     force_of_slice<D>(s, pairs_, payload, Q, {op_, s}, force);
-    if (control_) control_->add_to(s, x, force);
+    if (control_) control_->add_to(s, u, force);
     const Index i = s * lanes;
     const Pack per_mass = 1 / load(m + i);
     for (int d = 0; d < D; ++d) {
@@ -147,7 +146,7 @@ void TlDisplacement<D>::force_pass(const Payload& payload) {
 
 template <int D>
 void TlDisplacement<D>::update_accelerations(double t) {
-  if (!p_.mirror.empty()) p_.mirror.positions(p_.x);
+  if (!p_.mirror.empty()) p_.mirror.vectors(p_.u);
   with_payload<D>(op_, pairs_, p_.X, [&](const auto& payload) {
     gradient_pass(payload);
     mirror_tensors();
@@ -162,18 +161,19 @@ double TlDisplacement<D>::strain_energy() const {
   std::vector<double> energy(static_cast<std::size_t>(groups_.chunks()), 0.0);
 #pragma omp parallel for schedule(static) if (p_.n > parallel_from)
   for (Index c = 0; c < groups_.chunks(); ++c) {
-    alignas(64) double F[D * D * chunk], P[D * D * chunk], e[chunk];
+    alignas(64) double F[D * D * chunk], H_diagonal[D * chunk], P[D * D * chunk], e[chunk];
     const Index first = groups_.first_slice(c), last = groups_.last_slice(c);
     alignas(64) double of_control[chunk] = {};
     for (Index s = first; s < last; ++s) {
       Pack f[D * D];
-      this->gradient(s, p_.x, f);
-      for (int k = 0; k < D * D; ++k) store(F + k * chunk + (s - first) * lanes, f[k]);
-      if (control_) store(of_control + (s - first) * lanes, control_->energy(s, Columns<D>(p_.x), f));
+      const Index at = (s - first) * lanes;
+      this->gradient(s, p_.u, f);
+      if (control_) store(of_control + at, control_->energy(s, Columns<D>(p_.u), f));
+      deform<D>(f, chunk, F + at, H_diagonal + at);
     }
     const int n = (last - first) * lanes;
     groups_.template call<1>(c, e, [&](std::size_t m, double* out) {
-      materials_[m]->stress({n, chunk, F, P, out});
+      materials_[m]->stress({n, chunk, F, P, out, H_diagonal});
     });
     for (Index i = first * lanes; i < std::min<Index>(last * lanes, p_.n); ++i)
       energy[static_cast<std::size_t>(c)] +=

@@ -21,15 +21,15 @@ namespace {
 /// Total Lagrangian form whose stresses live on the cells between the particles (stress points: Belytschko,
 /// Guo, Liu & Xiao 2000; Rabczuk, Belytschko & Xiao 2004). A cell of volume V_q(X), with corners I and B_qI =
 /// dV_q/dX_I, has the mean gradient of Flanagan & Belytschko (1981),
-///   F_q = 1/V_q sum_I x_I (x) B_qI,   f_I = -sum_q P_q B_qI,
+///   F_q = I + 1/V_q sum_I u_I (x) B_qI,   f_I = -sum_q P_q B_qI,
 /// which is exact for linear fields; forces are its adjoint, and those of a constant stress cancel inside
 /// (sum_q B_qI = 0) however irregular the cells are, for together they fill space. Nothing is stored for a
 /// cell: B is one for strips of equal boxes, and else made from the corners' modes in every step.
 ///
-/// What F_q does not see are the hourglass modes, q_m = x_m - F_q X_m with the modes of cell_modes.hpp. They
-/// get the energy 1/2 sum_m k_m |q_m|^2, which is zero for linear fields and does not change under rotations.
-/// With k = E / (3 D) sum |b_m|^2 / V a bent square, or cube, has the energy of a beam: no shear, and a
-/// section that is free to contract (assumed strain: Belytschko & Bindeman 1991, 1993).
+/// What F_q does not see are the hourglass modes, q_m = u_m - (F_q - I) X_m with the modes of cell_modes.hpp.
+/// They get the energy 1/2 sum_m k_m |q_m|^2, which is zero for linear fields and does not change under
+/// rotations. With k = E / (3 D) sum |b_m|^2 / V a bent square, or cube, has the energy of a beam: no shear,
+/// and a section that is free to contract (assumed strain: Belytschko & Bindeman 1991, 1993).
 template <int D>
 class TlStressPoints final : public HyperelasticForm<D> {
   using Base = HyperelasticForm<D>;
@@ -76,9 +76,9 @@ class TlStressPoints final : public HyperelasticForm<D> {
   struct LawAtRest;
 
   template <class Cells, class Law>
-  void sweep_strip(const Visit& visit, const Columns<D>& x, Law& law) const;
+  void sweep_strip(const Visit& visit, const Columns<D>& u, Law& law) const;
   template <class Law>
-  void sweep_part(const std::vector<Visit>& part, const Field& x, Law& law) const;
+  void sweep_part(const std::vector<Visit>& part, const Field& u, Law& law) const;
 
   /// Calls f with a `BoxCells` or `SkewCells` of cells j to j + 7 of a strip.
   template <class F>
@@ -140,7 +140,7 @@ void TlStressPoints<D>::check_volumes() const {
       const Index i = s.row[0] + j;
       throw InputError(fmt::format(
           "the cell whose first corner is particle {} at {} has volume {:g}: is it turned inside out?",
-          p_.id[i], describe<D>(p_.X.template vec<D>(static_cast<std::size_t>(i))), V));
+          p_.id[i], describe<D>(p_.reference_position(i)), V));
     }
 }
 
@@ -181,7 +181,7 @@ struct TlStressPoints<D>::LawAtRest {
 // Adds the forces of one strip to the rows that are the visitor's.
 template <int D>
 template <class Cells, class Law>
-TAUT_INLINE void TlStressPoints<D>::sweep_strip(const Visit& visit, const Columns<D>& x, Law& law) const {
+TAUT_INLINE void TlStressPoints<D>::sweep_strip(const Visit& visit, const Columns<D>& u, Law& law) const {
   const Strip& s = cells_.strips()[static_cast<std::size_t>(visit.strip)];
   const Columns<D> X(p_.X);
   const double stiffness = stiffness_[s.material];
@@ -192,7 +192,7 @@ TAUT_INLINE void TlStressPoints<D>::sweep_strip(const Visit& visit, const Column
   for (int r = 0; r < rows; ++r)
     for (int d = 0; d < D; ++d) upper[r][d] = pack(0);
   for (Index begin = 0; begin < s.count; begin += chunk) {
-    alignas(64) double F[D * D * chunk], P[D * D * chunk];
+    alignas(64) double F[D * D * chunk], H_diagonal[D * chunk], P[D * D * chunk];
     Bends<D> bends[chunk_packs];
     Cells cells[chunk_packs];
     const int packs = (std::min<Index>(chunk, s.count - begin) + lanes - 1) / lanes;
@@ -200,12 +200,12 @@ TAUT_INLINE void TlStressPoints<D>::sweep_strip(const Visit& visit, const Column
       const Index j = begin + k * lanes;
       Pack modes[D][cell_corners<D>], f[D * D];
       cells[k] = Cells(s, j, X);
-      load_modes<D>(s, j, x, modes);
+      load_modes<D>(s, j, u, modes);
       cells[k].deform(modes, f, bends[k]);
+      deform<D>(f, chunk, F + k * lanes, H_diagonal + k * lanes);
       law.see(s, j, f);
-      for (int c = 0; c < D * D; ++c) store(F + c * chunk + k * lanes, f[c]);
     }
-    law.stress(s, {packs * lanes, chunk, F, P, nullptr});
+    law.stress(s, {packs * lanes, chunk, F, P, nullptr, H_diagonal});
     for (int k = 0; k < packs; ++k) {
       const Index j = begin + k * lanes;
       Pack force[D][cell_corners<D>];
@@ -232,7 +232,7 @@ TAUT_INLINE void TlStressPoints<D>::sweep_strip(const Visit& visit, const Column
 template <int D>
 template <class Law>
 void TlStressPoints<D>::sweep_part(const std::vector<Visit>& part, const Field& field, Law& law) const {
-  const Columns<D> x(field);
+  const Columns<D> u(field);
   const double* per_mass = per_mass_.component(0);
   for (const Visit& visit : part) {
     for (int r = 0; r < rows; ++r)
@@ -241,9 +241,9 @@ void TlStressPoints<D>::sweep_part(const std::vector<Visit>& part, const Field& 
           for (int d = 0; d < D; ++d)
             std::fill(p_.a.component(d) + span.begin, p_.a.component(d) + span.end, 0.0);
     if (cells_.strips()[static_cast<std::size_t>(visit.strip)].regular)
-      sweep_strip<BoxCells<D>>(visit, x, law);
+      sweep_strip<BoxCells<D>>(visit, u, law);
     else
-      sweep_strip<SkewCells<D>>(visit, x, law);
+      sweep_strip<SkewCells<D>>(visit, u, law);
     for (int r = 0; r < rows; ++r)
       if (visit.rows >> r & 1)
         for (const auto& span : cells_.last_touched(visit.strip, r))
@@ -262,7 +262,7 @@ void TlStressPoints<D>::update_accelerations(double t) {
 #pragma omp parallel for schedule(static, 1) reduction(min : inverted) if (parts_.size() > 1)
   for (std::size_t part = 0; part < parts_.size(); ++part) {
     ElasticLaw law{*this};
-    sweep_part(parts_[part], p_.x, law);
+    sweep_part(parts_[part], p_.u, law);
     inverted = std::min(inverted, law.inverted);
 #pragma omp critical
     extremes.merge(law.extremes);
@@ -277,7 +277,7 @@ double TlStressPoints<D>::strain_energy() const {
   this->need_energies();
   const auto strips = cells_.strips();
   std::vector<double> energy(strips.size(), 0.0);
-  const Columns<D> x(p_.x);
+  const Columns<D> u(p_.u);
 #pragma omp parallel for schedule(static) if (p_.n > parallel_from)
   for (std::size_t k = 0; k < strips.size(); ++k) {
     const Strip& s = strips[k];
@@ -285,11 +285,11 @@ double TlStressPoints<D>::strain_energy() const {
       energy[k] += with_cells(s, j, [&](const auto& cells) {
         Pack modes[D][cell_corners<D>], f[D * D];
         Bends<D> bends;
-        load_modes<D>(s, j, x, modes);
+        load_modes<D>(s, j, u, modes);
         cells.deform(modes, f, bends);
-        alignas(64) double F[D * D * lanes], P[D * D * lanes], e[lanes];
-        for (int c = 0; c < D * D; ++c) store(F + c * lanes, f[c]);
-        materials_[s.material]->stress({lanes, lanes, F, P, e});
+        alignas(64) double F[D * D * lanes], H_diagonal[D * lanes], P[D * D * lanes], e[lanes];
+        deform<D>(f, lanes, F, H_diagonal);
+        materials_[s.material]->stress({lanes, lanes, F, P, e, H_diagonal});
         Pack bent = pack(0);
         for (int m = 0; m < bends.count; ++m)
           for (int d = 0; d < D; ++d)
@@ -312,11 +312,11 @@ template <class Cells, class F>
 void TlStressPoints<D>::with_stresses(const Strip& s, Index j, const Cells& cells, Index count, F&& f) const {
   Pack modes[D][cell_corners<D>], gradient[D * D];
   Bends<D> bends;
-  load_modes<D>(s, j, Columns<D>(p_.x), modes);
+  load_modes<D>(s, j, Columns<D>(p_.u), modes);
   cells.deform(modes, gradient, bends);
-  alignas(64) double block[D * D * lanes], stress[D * D * lanes];
-  for (int c = 0; c < D * D; ++c) store(block + c * lanes, gradient[c]);
-  materials_[s.material]->stress({lanes, lanes, block, stress, nullptr});
+  alignas(64) double block[D * D * lanes], H_diagonal[D * lanes], stress[D * D * lanes];
+  deform<D>(gradient, lanes, block, H_diagonal);
+  materials_[s.material]->stress({lanes, lanes, block, stress, nullptr, H_diagonal});
   for (int l = 0; l < count; ++l) {
     Mat<D> of_cell, P;
     for (int c = 0; c < D * D; ++c) {

@@ -27,7 +27,7 @@ class CorotatedSvk final : public Hyperelastic<D> {
       throw InputError("material 'corotated_svk' has no stored energy: P = R S is not the derivative of one");
     for (int p = 0; p < block.n; p += lanes) {
       const TensorPack<D> F = load_tensor<D>(block.F + p, block.stride);
-      const TensorPack<D> E = green_strain(displacement_gradient(F));
+      const TensorPack<D> E = green_strain(displacement_gradient(block, p, F));
       store_tensor(block.P + p, block.stride, product(polar_rotation(F), hooke(E, lambda_, mu_)));
       if (block.P_lateral) lateral(block, p, E);
     }

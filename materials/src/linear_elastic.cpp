@@ -28,7 +28,7 @@ class LinearElastic final : public Hyperelastic<D> {
   template <bool outputs>
   void evaluate(const StressBlock<D>& block) const {
     for (int p = 0; p < block.n; p += lanes) {
-      const TensorPack<D> H = displacement_gradient(load_tensor<D>(block.F + p, block.stride));
+      const TensorPack<D> H = displacement_gradient(block, p, load_tensor<D>(block.F + p, block.stride));
       TensorPack<D> strain;
       for (int i = 0; i < D; ++i)
         for (int j = 0; j < D; ++j) strain(i, j) = 0.5 * (H(i, j) + H(j, i));

@@ -6,7 +6,7 @@ namespace {
 
 /// P = mu (F - F^-T) + lambda ln J F^-T, the derivative of mu (F:F - 3) / 2 - mu ln J + lambda ln²J / 2
 /// (Bonet and Wood 1997, section 5.4.3).
-/// Energies are written in H = F - I, where small strains do not cancel.
+/// Energies, and the diagonal of P, are written in H = F - I, where small strains do not cancel.
 template <int D>
 class NeoHookean final : public Hyperelastic<D> {
  public:
@@ -31,12 +31,14 @@ class NeoHookean final : public Hyperelastic<D> {
   void solid(const StressBlock<D>& block) const {
     for (int p = 0; p < block.n; p += lanes) {
       const TensorPack<D> F = load_tensor<D>(block.F + p, block.stride);
-      const TensorPack<D> H = displacement_gradient(F), cof = cofactor(F);
+      const TensorPack<D> H = displacement_gradient(block, p, F), cof = cofactor(F);
       const Pack change = volume_change(H);
       const Pack log_J = pack_log1p(change);
-      const Pack factor = (lambda_ * log_J - mu_) / (1.0 + change);
+      const Pack per_J = 1.0 / (1.0 + change), volumetric = lambda_ * log_J;
       TensorPack<D> P;
-      for (int i = 0; i < D * D; ++i) P.c[i] = mu_ * F.c[i] + factor * cof.c[i];
+      for (int i = 0; i < D * D; ++i) P.c[i] = mu_ * F.c[i] + (volumetric - mu_) * per_J * cof.c[i];
+      for (int i = 0; i < D; ++i)
+        P(i, i) = (mu_ * (change * F(i, i) + excess_over_cofactor(H, i)) + volumetric * cof(i, i)) * per_J;
       store_tensor(block.P + p, block.stride, P);
       if constexpr (outputs) {
         if (block.energy)
@@ -52,13 +54,16 @@ class NeoHookean final : public Hyperelastic<D> {
   void sheet(const StressBlock<D>& block) const {
     for (int p = 0; p < block.n; p += lanes) {
       const TensorPack<D> F = load_tensor<D>(block.F + p, block.stride);
-      const TensorPack<D> H = displacement_gradient(F), cof = cofactor(F);
+      const TensorPack<D> H = displacement_gradient(block, p, F), cof = cofactor(F);
       const Pack change = volume_change(H);
       const Pack log_J2 = pack_log1p(change);
       const SquaredThickness thickness = squared_thickness(log_J2, lambda_ / (2 * mu_));
-      const Pack factor = -mu_ * thickness.w / (1.0 + change);
+      const Pack per_J = 1.0 / (1.0 + change);
       TensorPack<D> P;
-      for (int i = 0; i < D * D; ++i) P.c[i] = mu_ * F.c[i] + factor * cof.c[i];
+      for (int i = 0; i < D * D; ++i) P.c[i] = mu_ * (F.c[i] - thickness.w * per_J * cof.c[i]);
+      for (int i = 0; i < D; ++i)
+        P(i, i) =
+            mu_ * per_J * (change * F(i, i) + excess_over_cofactor(H, i) - thickness.excess * cof(i, i));
       store_tensor(block.P + p, block.stride, P);
       if constexpr (outputs) {
         if (block.energy) {
@@ -72,6 +77,15 @@ class NeoHookean final : public Hyperelastic<D> {
     }
   }
 
+  /// F_ii less its cofactor, of F = I + H.
+  TAUT_INLINE static Pack excess_over_cofactor(const TensorPack<D>& H, int i) {
+    if constexpr (D == 1) return H.c[0];
+    if constexpr (D == 2) return i == 0 ? H.c[0] - H.c[3] : H.c[3] - H.c[0];
+    if constexpr (D == 3) {
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      return H(i, i) - H(j, j) - H(k, k) - (H(j, j) * H(k, k) - H(j, k) * H(k, j));
+    }
+  }
   /// k of the acoustic tensor A = mu I + k g g^T, g = F^-T N, at the volume ratio J.
   double normal_stiffness(double J) const {
     if (!is_plane_stress<D>(this->parameters_)) return mu_ + lambda_ * (1 - std::log(J));

@@ -40,7 +40,7 @@ class StVenantKirchhoff final : public Hyperelastic<D> {
   void evaluate(const StressBlock<D>& block) const {
     for (int p = 0; p < block.n; p += lanes) {
       const TensorPack<D> F = load_tensor<D>(block.F + p, block.stride);
-      const TensorPack<D> E = green_strain(displacement_gradient(F));
+      const TensorPack<D> E = green_strain(displacement_gradient(block, p, F));
       store_tensor(block.P + p, block.stride, product(F, hooke(E, lambda_, mu_)));
       if constexpr (outputs) {
         if (block.energy) store(block.energy + p, hooke_energy(E, lambda_, mu_));

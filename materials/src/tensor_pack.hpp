@@ -3,6 +3,7 @@
 /// Tensors of packs: eight particles' deformation gradients at once.
 
 #include <taut/internal/simd_math.hpp>
+#include <taut/materials/material.hpp>
 
 namespace taut {
 
@@ -55,6 +56,16 @@ template <int D>
 TAUT_INLINE TensorPack<D> displacement_gradient(TensorPack<D> F) {
   for (int i = 0; i < D; ++i) F(i, i) = F(i, i) - 1.0;
   return F;
+}
+
+/// The same of eight particles of a block, from p on, whose deformation gradients are F.
+template <int D>
+TAUT_INLINE TensorPack<D> displacement_gradient(const StressBlock<D>& block, int p, const TensorPack<D>& F) {
+  if (!block.H_diagonal) return displacement_gradient(F);
+  TensorPack<D> H = F;
+  for (int i = 0; i < D; ++i)
+    H(i, i) = load(block.H_diagonal + static_cast<std::size_t>(i) * block.stride + p);
+  return H;
 }
 
 template <int D>

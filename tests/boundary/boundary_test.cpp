@@ -7,11 +7,11 @@
 
 using namespace taut;
 
-TEST_CASE("constraints hold positions, velocities and accelerations of their components") {
-  Field X(3, 2), x(3, 2), v(3, 2), a(3, 2);
+TEST_CASE("constraints hold displacements, velocities and accelerations of their components") {
+  Field X(3, 2), u(3, 2), v(3, 2), a(3, 2);
   for (Index i = 0; i < 3; ++i) {
     X.set_vec<2>(i, {1.0 * i, 2.0 * i});
-    x.set_vec<2>(i, {9, 9});
+    u.set_vec<2>(i, {9, 9});
     v.set_vec<2>(i, {7, 7});
     a.set_vec<2>(i, {5, 5});
   }
@@ -19,12 +19,12 @@ TEST_CASE("constraints hold positions, velocities and accelerations of their com
   constraints.fix({0}, 1);
   constraints.prescribe({2}, 0, [](const Vec<2>& at, double t) { return at[1] * t * t; });
   const double t = 0.5;
-  constraints.apply_to_positions(t, X, x);
+  constraints.apply_to_displacements(t, X, u);
   constraints.apply_to_velocities(t, X, v);
   constraints.apply_to_accelerations(a);
-  CHECK(x.vec<2>(0) == Vec<2>(9, 0));
-  CHECK(x.vec<2>(1) == Vec<2>(9, 9));
-  CHECK(x.vec<2>(2) == Vec<2>(2 + 4 * 0.25, 9));
+  CHECK(u.vec<2>(0) == Vec<2>(9, 0));
+  CHECK(u.vec<2>(1) == Vec<2>(9, 9));
+  CHECK(u.vec<2>(2) == Vec<2>(4 * 0.25, 9));
   CHECK(v.vec<2>(0) == Vec<2>(7, 0));
   CHECK(v.vec<2>(2)[0] == doctest::Approx(2 * 4 * t));
   CHECK(a.vec<2>(0) == Vec<2>(5, 0));

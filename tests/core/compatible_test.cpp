@@ -98,7 +98,7 @@ TEST_CASE("compatible operators of a lattice that is all but closed stay correct
   const auto accelerations = [](Bare<3>& body) {
     for (Index i = 0; i < body.n(); ++i) {
       const Vec<3> X = body.X(i);
-      body.particles.x.set_vec<3>(i, X + 0.05 * Vec<3>(std::sin(2 * X.y()), std::cos(3 * X.z()), X.x() * X.y()));
+      body.particles.u.set_vec<3>(i, 0.05 * Vec<3>(std::sin(2 * X.y()), std::cos(3 * X.z()), X.x() * X.y()));
     }
     body.formulation->update_accelerations(0);
     return body.particles.a;

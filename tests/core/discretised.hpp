@@ -149,10 +149,10 @@ struct Bare {
 
   Index n() const { return particles.n; }
   Vec<D> X(Index i) const { return particles.X.template vec<D>(i); }
-  Vec<D> x(Index i) const { return particles.x.template vec<D>(i); }
+  Vec<D> x(Index i) const { return X(i) + particles.u.template vec<D>(i); }
   template <class F>
   void place(F&& position) {
-    for (Index i = 0; i < n(); ++i) particles.x.template set_vec<D>(i, position(X(i)));
+    for (Index i = 0; i < n(); ++i) particles.u.template set_vec<D>(i, position(X(i)) - X(i));
   }
   /// Forces [N] of the present positions.
   std::vector<Vec<D>> forces() {
@@ -172,13 +172,13 @@ void check_derivative(Bare<D>& body, double dx, Index stride) {
   const double step = 1e-5 * dx;
   for (Index i = 0; i < body.n(); i += stride)
     for (int d = 0; d < D; ++d) {
-      double& x = body.particles.x.component(d)[i];
-      const double at = x;
-      x = at + step;
+      double& u = body.particles.u.component(d)[i];
+      const double at = u;
+      u = at + step;
       const double more = body.formulation->strain_energy();
-      x = at - step;
+      u = at - step;
       const double less = body.formulation->strain_energy();
-      x = at;
+      u = at;
       const double error =
           std::abs(-(more - less) / (2 * step) - forces[static_cast<std::size_t>(i)][d]) / scale;
       CHECK(error < 1e-8);

@@ -113,7 +113,7 @@ void a_formulation_of_the_user_is_run() {
   Particles<2> particles;
   particles.n = particles.total = static_cast<Index>(n);
   particles.dx = 1;
-  particles.X = particles.x = particles.v = particles.a = particles.m_flat = Field(n, 2);
+  particles.X = particles.u = particles.v = particles.a = particles.m_flat = Field(n, 2);
   particles.V = particles.m = Field(n, 1);
   for (double& m : particles.m.flat()) m = 2;
   particles.material.resize(n);

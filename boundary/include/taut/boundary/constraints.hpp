@@ -28,7 +28,7 @@ class Constraints {
   /// To be called when all is held, with the masses of the particles. \throws InputError as `HeldPoints::factor`.
   void finish(const Field& mass);
 
-  void apply_to_positions(double t, const Field& X, Field& x) const;
+  void apply_to_displacements(double t, const Field& X, Field& u) const;
   /// Velocities of prescribed components are the central difference of their displacement.
   void apply_to_velocities(double t, const Field& X, Field& v) const;
   /// Constrained components carry no acceleration of their own, so that norms of it are out-of-balance forces.

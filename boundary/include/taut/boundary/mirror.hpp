@@ -34,7 +34,7 @@ class MirrorMap {
 
   /// Mirrors positions: x' = reflect(x).
   void positions(Field& x) const;
-  /// Mirrors vectors (velocities): v' = S v.
+  /// Mirrors vectors (displacements, velocities): v' = S v.
   void vectors(Field& v) const;
   /// Mirrors row-major D×D tensors: T' = S T S.
   void tensors(Field& T) const;

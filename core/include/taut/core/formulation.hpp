@@ -26,7 +26,7 @@ struct Failure {
 /// A stress that a formulation has of its own, as total Lagrangian forms do.
 template <int D>
 struct StressSample {
-  Vec<D> X;                          ///< where, in the reference configuration [m]
+  Vec<D> X;  ///< where, in the reference configuration, as `Particles::X` relative to `Particles::origin` [m]
   std::span<const Index> particles;  ///< the one it stands on, or the corners of the cell it stands in
   std::uint8_t material;             ///< which of the particles' materials it is of
   Mat<D> F, P;                       ///< deformation gradient, first Piola-Kirchhoff stress [Pa]
@@ -48,11 +48,13 @@ class Formulation : public Dynamics {
  public:
   explicit Formulation(const FormulationSetup<D>& setup);
 
-  std::span<double> positions() override { return p_.x.flat(); }
+  /// Displacements: as the state they keep the digits of small strains, however far the particles stand from
+  /// the origin.
+  std::span<double> positions() override { return p_.u.flat(); }
   std::span<double> velocities() override { return p_.v.flat(); }
   std::span<const double> accelerations() override { return p_.a.flat(); }
   std::span<const double> masses() override { return p_.m_flat.flat(); }
-  void constrain_positions(double t) override { constraints_.apply_to_positions(t, p_.X, p_.x); }
+  void constrain_positions(double t) override { constraints_.apply_to_displacements(t, p_.X, p_.u); }
   void constrain_velocities(double t) override { constraints_.apply_to_velocities(t, p_.X, p_.v); }
 
   /// Set by the update that found the state broken.

@@ -50,7 +50,7 @@ Shape<D> implicit(std::function<double(const Vec<D>&)> f, const Vec<D>& min, con
 /// A piece of a body's boundary, flat or nearly so.
 template <int D>
 struct Facet {
-  Vec<D> centre;    ///< where a linear field has its mean over the piece [m]
+  Vec<D> centre;    ///< where a linear field has its mean over the piece, as `Cloud::X` [m]
   Vec<D> area;      ///< outward area vector [m^(D-1)]
   Index owner = 0;  ///< the particle whose part of the body ends there
 };
@@ -58,7 +58,7 @@ struct Facet {
 /// Particles of a body in its reference configuration, in the order of their making (the user's ids).
 template <int D>
 struct Cloud {
-  std::vector<Vec<D>> X;  ///< reference positions [m]
+  std::vector<Vec<D>> X;  ///< reference positions, relative to `origin` [m]
   std::vector<double> V;  ///< reference volumes [m^D]
   std::vector<Vec<D>> B;  ///< outward boundary area vectors [m^(D-1)], zero inside; may be empty when unknown
   /// Pieces of the boundary where it does not pass through the particles: sum A = 0 and sum x_f (x) A_f =
@@ -73,6 +73,9 @@ struct Cloud {
   std::vector<double> cell_share;  ///< part of each cell that is body, 0 … 1; empty where all are whole
   double dx = 0;  ///< nominal spacing [m]
   std::vector<double> spacing;  ///< of each particle [m], for supports that grow with it; empty where all have dx
+  /// What X and the centres of facets are relative to [m]. Coordinates far from their origin (maps) have too
+  /// few digits left for spacings and displacements, so that bodies there get one of their own.
+  Vec<D> origin = Vec<D>::Zero();
   std::size_t size() const { return X.size(); }
 };
 
@@ -103,16 +106,21 @@ struct LatticeOptions {
 /// sum X (x) B = (sum V) I hold to round-off. Jitter moves a point only when all cells around it are inside
 /// (all cells around its own, for cell-centred ones), so that neither the faces nor the sums change; the
 /// displacements depend on the seed and the place in the lattice alone, and are the same on every machine.
-/// `Cloud::dx` is the wanted spacing where it divides the box, else the D-th root of a cell's volume. \throws
+/// `Cloud::dx` is the wanted spacing where it divides the box, else the D-th root of a cell's volume.
+///
+/// A box more than ten of its extents from the origin gets a `Cloud::origin` in its lower corner. Its edges
+/// are then as long as they were before its coordinates were rounded, as far as can be told: the multiple of
+/// dx, or else the shortest decimal, that this leaves possible. \throws
 /// InputError for a spacing that is not positive or that is larger than the body, jitter, layers or samples
 /// out of range, a body without an inside cell, more cells than `Index` counts, `cells` of a cell-centred
 /// lattice.
 template <int D>
 Cloud<D> make_cloud(const Shape<D>& shape, const LatticeOptions& options);
 
-/// Whether a reference position lies on a face of the bounding box of the cloud's particles, "x_min", "x_max", "y_min",
-/// …, within dx/4: the outermost particles of cell-centred clouds. Added layers do not count for the bounding
-/// box. \throws InputError for an unknown face, listing the valid ones, or an empty cloud.
+/// Whether a reference position (from the origin of the coordinates, not that of the cloud) lies on a face of
+/// the cloud's bounding box, "x_min", "x_max", "y_min", …, within dx/4: the outermost particles of
+/// cell-centred clouds. Added layers do not count for the bounding box. \throws InputError for an unknown
+/// face, listing the valid ones, or an empty cloud.
 template <int D>
 std::function<bool(const Vec<D>&)> on_face(const Cloud<D>& cloud, std::string_view face);
 /// The same for the bounding box of the cloud's facets, within dx/1000: half a cell outside of the outermost particles of
@@ -122,7 +130,8 @@ std::function<bool(const Vec<D>&)> on_facets(const Cloud<D>& cloud, std::string_
 
 /// Reads particles from a CSV file with a header line. Columns x[,y[,z]] and, optionally, volume and
 /// bx[,by[,bz]] (area vectors), in any order; `#` starts a comment. Without volumes each particle gets dx^D;
-/// `dx` defaults to the median nearest-neighbour distance when 0. \throws InputError as file:line: what, for
+/// `dx` defaults to the median nearest-neighbour distance when 0. Clouds far from the origin get one of their
+/// own, as those of `make_cloud`. \throws InputError as file:line: what, for
 /// a missing file or column, a field that is no finite number, a wrong number of fields, a volume that is not
 /// positive; also for a dx that is negative or cannot be found.
 template <int D>

@@ -29,13 +29,13 @@ struct SharedSlots {
 
 /// A gradient operator and its adjoint, in factored form: with one vector G_ab for each directed pair and one
 /// matrix M_a for each particle,
-///   F_a = [sum_b x_ab (x) G_ab] M_a^T + F0_a,   x_ab = x_b - x_a,
+///   F_a = I + [sum_b u_ab (x) G_ab] M_a^T,   u_ab = u_b - u_a,
 ///   f_a = sum_b (Q_a G_ab - Q_b G_ba),     Q_a = V_a P_a M_a,
 /// where, for `standard` and `corrected`, G_ab = w_a w_b grad W_ab = -G_ba with the particles' weights w;
 /// `standard` has w = V and M_a = I / V_a, `corrected` w = dx^D and M_a below. The vectors of `compatible`
-/// and `quadratic` are not antisymmetric, so -G_ba is stored beside G_ab. F0 is absent where linear fields
-/// are exact; for `standard` it makes F = I + grad u, so that the body is free of stress at rest. The force
-/// is the exact adjoint of the gradient, so linear momentum is kept to round-off.
+/// and `quadratic` are not antisymmetric, so -G_ba is stored beside G_ab. Of displacements u the body is free
+/// of stress at rest whatever the operator, and small strains keep their digits. The force is the exact
+/// adjoint of the gradient, so linear momentum is kept to round-off.
 template <int D>
 struct PairOperator {
   PairPrecision precision = PairPrecision::single_precision;  ///< never `automatic`
@@ -61,7 +61,6 @@ struct PairOperator {
   // Shared: slice s has M and sum of block `slice_code[s]`, D×D + D components of eight lanes each.
   AlignedArray<Index> slice_code;
   AlignedArray<double> slice_blocks;
-  Field F0;  ///< D×D components, or empty
 
   /// Stored G_ab of lane l in slot k.
   Vec<D> vector(std::int64_t k, int lane) const {
@@ -81,7 +80,7 @@ struct PairOperator {
   std::size_t bytes() const {
     return vectors_f.bytes() + vectors_d.bytes() + adjoint_f.bytes() + adjoint_d.bytes() +
            slice_slots.bytes() + slots.bytes() + blocks.bytes() + slice_code.bytes() + slice_blocks.bytes() +
-           weight.bytes() + M.bytes() + F0.bytes() + sum.bytes();
+           weight.bytes() + M.bytes() + sum.bytes();
   }
 };
 

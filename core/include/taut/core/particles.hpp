@@ -24,7 +24,8 @@ struct Particles {
   double dx = 0;             ///< nominal spacing [m]
   std::vector<Index> id;     ///< id[i]: the user's index of particle i
   std::vector<Index> place;  ///< place[id]: where the user's particle stands
-  Field X, x, v, a;          ///< reference and current position, velocity, acceleration; D components
+  Vec<D> origin = Vec<D>::Zero();  ///< of the coordinates X, see `Cloud::origin` [m]
+  Field X, u, v, a;                ///< reference position, displacement, velocity, acceleration; D components
   Field spacing;  ///< of each particle, for supports that grow with it [m]; empty where all have dx
   Field V;       ///< reference volume [m^D], its image's part included for particles on symmetry planes
   Field m;       ///< mass [kg] (per unit thickness in 2D, per unit area in 1D)
@@ -39,6 +40,8 @@ struct Particles {
   std::vector<std::array<Index, 1 << D>> cells;
   std::vector<double> cell_share;
 
+  /// Where particle i stands in the reference configuration, in the user's coordinates.
+  Vec<D> reference_position(Index i) const { return origin + X.template vec<D>(static_cast<std::size_t>(i)); }
   /// The support of a pair over that of particles dx apart: the larger one of the two.
   double support_scale(Index i, Index j) const {
     if (spacing.empty()) return 1;
@@ -52,7 +55,7 @@ struct Particles {
   }
 
   std::size_t bytes() const {
-    return X.bytes() + x.bytes() + spacing.bytes() + v.bytes() + a.bytes() + V.bytes() + m.bytes() + m_flat.bytes() +
+    return X.bytes() + u.bytes() + spacing.bytes() + v.bytes() + a.bytes() + V.bytes() + m.bytes() + m_flat.bytes() +
            (id.size() + place.size()) * sizeof(Index) + B.size() * sizeof(Vec<D>) + material.size() +
            planes.size() + cells.size() * sizeof(cells[0]) + cell_share.size() * sizeof(double);
   }

@@ -18,9 +18,10 @@ namespace taut {
 template <int D>
 std::vector<double> multiplicity(const Cloud<D>& cloud, const std::vector<typename MirrorMap<D>::Plane>& planes);
 
-/// Orders the particles of a cloud for locality and lays out their state, mirror images within `reach` [m] of the
-/// planes behind them. `material[id]` indexes `materials`.
-/// \throws InputError for a cloud without particles, volumes that are not positive, or a plane that cuts the body.
+/// Orders the particles of a cloud for locality and lays out their state, mirror images within `reach` [m] of
+/// the planes, which are given in the cloud's own coordinates, behind them. `material[id]` indexes
+/// `materials`. \throws InputError for a cloud without particles, volumes that are not positive, or a plane
+/// that cuts the body.
 template <int D>
 Particles<D> assemble(const Cloud<D>& cloud, std::vector<std::shared_ptr<const Material<D>>> materials,
                       const std::vector<std::uint8_t>& material, const std::vector<typename MirrorMap<D>::Plane>& planes,

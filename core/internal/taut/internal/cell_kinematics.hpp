@@ -35,7 +35,7 @@ TAUT_INLINE void load_modes(const typename CellStrips<D>::Strip& s, Index j, con
   for (int d = 0; d < D; ++d) corners_to_modes<D>(modes[d]);
 }
 
-/// Hourglass amplitudes, q_m = x_m - F X_m.
+/// Hourglass amplitudes, q_m = u_m - H X_m (= x_m - F X_m).
 template <int D>
 struct Bends {
   static constexpr int count = hourglass_modes<D>.size();
@@ -60,11 +60,12 @@ class BoxCells {
   TAUT_INLINE Pack volume() const { return pack(volume_); }
   /// sum over `volume_modes` of |b_m|^2 / V, to which hourglass stiffness is proportional.
   TAUT_INLINE Pack stiffness() const { return pack(stiffness_); }
-  TAUT_INLINE void deform(const Pack (&x)[D][cell_corners<D>], Pack (&F)[D * D], Bends<D>& bends) const {
+  /// H = F - I and the hourglass amplitudes from the modes of the corners' displacements.
+  TAUT_INLINE void deform(const Pack (&u)[D][cell_corners<D>], Pack (&H)[D * D], Bends<D>& bends) const {
     for (int d = 0; d < D; ++d)
-      for (int e = 0; e < D; ++e) F[d * D + e] = x[d][1 << e] * g_[e];
+      for (int e = 0; e < D; ++e) H[d * D + e] = u[d][1 << e] * g_[e];
     for (int m = 0; m < bends.count; ++m)
-      for (int d = 0; d < D; ++d) bends.q[m][d] = x[d][hourglass_modes<D>[static_cast<std::size_t>(m)]];
+      for (int d = 0; d < D; ++d) bends.q[m][d] = u[d][hourglass_modes<D>[static_cast<std::size_t>(m)]];
   }
   /// Modes of the corners' forces from P (component c at P[c * stride]) and the stiffness of the first bend.
   TAUT_INLINE void forces(const double* P, std::size_t stride, const Bends<D>& bends, Pack k, Pack share,
@@ -103,18 +104,18 @@ class SkewCells {
   }
   TAUT_INLINE Pack volume() const { return of_.V; }
   TAUT_INLINE Pack stiffness() const { return stiffness_; }
-  TAUT_INLINE void deform(const Pack (&x)[D][cell_corners<D>], Pack (&F)[D * D], Bends<D>& bends) const {
+  TAUT_INLINE void deform(const Pack (&u)[D][cell_corners<D>], Pack (&H)[D * D], Bends<D>& bends) const {
     for (int d = 0; d < D; ++d)
       for (int e = 0; e < D; ++e) {
-        F[d * D + e] = x[d][volume_modes<D>[0]] * of_.b[0][e];
+        H[d * D + e] = u[d][volume_modes<D>[0]] * of_.b[0][e];
         for (std::size_t m = 1; m < volume_modes<D>.size(); ++m)
-          F[d * D + e] += x[d][volume_modes<D>[m]] * of_.b[m][e];
-        F[d * D + e] *= per_volume_;
+          H[d * D + e] += u[d][volume_modes<D>[m]] * of_.b[m][e];
+        H[d * D + e] *= per_volume_;
       }
     for (int m = 0; m < bends.count; ++m)
       for (int d = 0; d < D; ++d) {
-        bends.q[m][d] = x[d][hourglass_modes<D>[static_cast<std::size_t>(m)]];
-        for (int e = 0; e < D; ++e) bends.q[m][d] -= F[d * D + e] * rest_.q[m][e];
+        bends.q[m][d] = u[d][hourglass_modes<D>[static_cast<std::size_t>(m)]];
+        for (int e = 0; e < D; ++e) bends.q[m][d] -= H[d * D + e] * rest_.q[m][e];
       }
   }
   TAUT_INLINE void forces(const double* P, std::size_t stride, const Bends<D>& bends, Pack k, Pack share,

@@ -12,6 +12,17 @@
 
 namespace taut {
 
+/// Displacement gradients H of eight particles become deformation gradients F = I + H, and go into a block
+/// for materials: component c at F[c * stride], the diagonal of H beside it.
+template <int D>
+TAUT_INLINE void deform(Pack (&H)[D * D], std::size_t stride, double* F, double* H_diagonal) {
+  for (std::size_t d = 0; d < D; ++d) {
+    store(H_diagonal + d * stride, H[d * (D + 1)]);
+    H[d * (D + 1)] += 1.0;
+  }
+  for (std::size_t c = 0; c < D * D; ++c) store(F + c * stride, H[c]);
+}
+
 /// Hyperelastic materials, and the step that they allow. Forms set `frequency_` once and `stretch_` in each
 /// update.
 template <int D>
@@ -45,7 +56,7 @@ class HyperelasticForm : public Formulation<D> {
   void fail_inverted(Index particle) {
     if (this->failure_) return;
     this->failure_ =
-        Failure{p_.x.template vec<D>(particle).allFinite() ? "J <= 0" : "not a number", particle};
+        Failure{p_.u.template vec<D>(particle).allFinite() ? "J <= 0" : "not a number", particle};
   }
   void need_energies() const {
     for (const auto* material : materials_)

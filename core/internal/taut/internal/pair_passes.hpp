@@ -10,33 +10,33 @@
 
 namespace taut {
 
-/// sum_b x_ab (x) G_ab of the eight particles of slice s (row-major).
+/// sum_b u_ab (x) G_ab of the eight particles of slice s (row-major).
 template <int D, class Payload>
 TAUT_INLINE void outer_sum_of_slice(Index s, const PairList& pairs, const Payload& payload,
-                                    const Columns<D>& x, Pack (&sum)[D * D]) {
-  Pack xi[D];
-  for (int d = 0; d < D; ++d) xi[d] = load(x.c[d] + s * lanes);
+                                    const Columns<D>& u, Pack (&sum)[D * D]) {
+  Pack ui[D];
+  for (int d = 0; d < D; ++d) ui[d] = load(u.c[d] + s * lanes);
   for (int c = 0; c < D * D; ++c) sum[c] = pack(0);
   const auto vectors = payload.slice(s);
   for_slots(pairs, payload, s, [&](std::int64_t k, auto&& at) TAUT_INLINE_LAMBDA {
-    Pack xab[D];
-    for (int d = 0; d < D; ++d) xab[d] = at(x.c[d]) - xi[d];
+    Pack uab[D];
+    for (int d = 0; d < D; ++d) uab[d] = at(u.c[d]) - ui[d];
     vectors.components(k, at, [&](int e, Pack g) TAUT_INLINE_LAMBDA {
-      for (int d = 0; d < D; ++d) sum[d * D + e] += xab[d] * g;
+      for (int d = 0; d < D; ++d) sum[d * D + e] += uab[d] * g;
     });
   });
 }
 
-/// F (without F0) of the eight particles of slice s: [sum_b x_ab (x) G_ab] M_a^T.
+/// H = grad u of the eight particles of slice s: [sum_b u_ab (x) G_ab] M_a^T.
 template <int D, class Payload>
 TAUT_INLINE void gradient_of_slice(Index s, const PairList& pairs, const Payload& payload,
-                                   const Columns<D>& x, const SliceCoefficients<D>& of, Pack (&F)[D * D]) {
+                                   const Columns<D>& u, const SliceCoefficients<D>& of, Pack (&H)[D * D]) {
   Pack sum[D * D];
-  outer_sum_of_slice<D>(s, pairs, payload, x, sum);
+  outer_sum_of_slice<D>(s, pairs, payload, u, sum);
   for (int d = 0; d < D; ++d)
     for (int e = 0; e < D; ++e) {
-      F[d * D + e] = sum[d * D] * of.matrix(e * D);
-      for (int j = 1; j < D; ++j) F[d * D + e] += sum[d * D + j] * of.matrix(e * D + j);
+      H[d * D + e] = sum[d * D] * of.matrix(e * D);
+      for (int j = 1; j < D; ++j) H[d * D + e] += sum[d * D + j] * of.matrix(e * D + j);
     }
 }
 

@@ -27,13 +27,13 @@ struct IsotropicStiffness {
       P[d * D + d] += trace * sum;
     }
   }
-  /// The same of a block: P of its "F".
+  /// The same of a block.
   template <int D>
   void stress(const StressBlock<D>& block) const {
     for (int i = 0; i < block.n; i += lanes) {
       Pack H[D * D], P[D * D];
       for (std::size_t c = 0; c < D * D; ++c)
-        H[c] = load(block.F + c * block.stride + static_cast<std::size_t>(i));
+        H[c] = load((c % (D + 1) ? block.F + c * block.stride : block.H_diagonal + c / D * block.stride) + i);
       stress<D>(H, P);
       for (std::size_t c = 0; c < D * D; ++c)
         store(block.P + c * block.stride + static_cast<std::size_t>(i), P[c]);

@@ -23,11 +23,11 @@ struct SimulationImpl {
     std::function<void(double)> f;
   };
 
-  Cloud<D> cloud;
+  Cloud<D> cloud;  // in coordinates of its own, from cloud.origin; users see positions from theirs
   Method method;
   std::vector<std::shared_ptr<const Material<D>>> materials;
   std::vector<std::uint8_t> material;  // of each user's particle
-  std::vector<typename MirrorMap<D>::Plane> planes;
+  std::vector<typename MirrorMap<D>::Plane> planes;  // in the cloud's coordinates
   std::vector<std::function<void()>> conditions;  // boundary conditions, applied when places are known
   std::function<Vec<D>(const Vec<D>&)> initial_velocity, initial_displacement;
   std::vector<Observer> observers;
@@ -46,6 +46,7 @@ struct SimulationImpl {
     if (complete_velocities) complete_velocities();
   }
   Index place(std::size_t id) const { return particles.place.at(id); }
+  Vec<D> reference_position(std::size_t id) const { return cloud.origin + cloud.X.at(id); }
   /// What a condition acts on: particles, and facets that none of them owns.
   struct Selected {
     std::vector<Index> particles, facets;

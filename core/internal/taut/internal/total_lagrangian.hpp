@@ -32,15 +32,9 @@ class TotalLagrangian : public HyperelasticForm<D> {
   }
 
   Mat<D> deformation_gradient(Index i) const override {
-    Pack F[D * D];
-    gradient(i / lanes, p_.x, F);
-    Mat<D> value;
-    for (int c = 0; c < D * D; ++c) value(c / D, c % D) = F[c][i % lanes];
-    return value;
+    return Mat<D>::Identity() + displacement_gradient(i);
   }
-  Mat<D> first_piola_kirchhoff(Index i) const override {
-    return stress(i, deformation_gradient(i));
-  }
+  Mat<D> first_piola_kirchhoff(Index i) const override { return stress(i, displacement_gradient(i)); }
   Mat<D> cauchy_stress(Index i) const override {
     return full_cauchy_stress(i).template topLeftCorner<D, D>();
   }
@@ -49,8 +43,8 @@ class TotalLagrangian : public HyperelasticForm<D> {
   }
   void visit_stresses(const std::function<void(const StressSample<D>&)>& f) const override {
     for (Index i = 0; i < p_.n; ++i) {
-      const Mat<D> F = deformation_gradient(i);
-      f({p_.X.template vec<D>(i), {&i, 1}, p_.material[static_cast<std::size_t>(i)], F, stress(i, F)});
+      const Mat<D> H = displacement_gradient(i), F = Mat<D>::Identity() + H;
+      f({p_.X.template vec<D>(i), {&i, 1}, p_.material[static_cast<std::size_t>(i)], F, stress(i, H)});
     }
   }
 
@@ -58,33 +52,38 @@ class TotalLagrangian : public HyperelasticForm<D> {
   std::size_t bytes() const override { return pairs_.bytes() + op_.bytes() + Q_.bytes(); }
 
  protected:
-  /// P of particle i where its deformation gradient is F.
-  Mat<D> stress(Index i, const Mat<D>& F) const {
-    std::array<double, D * D * lanes> block{};
-    for (int c = 0; c < D * D; ++c)
-      for (int l = 0; l < lanes; ++l) block[static_cast<std::size_t>(c * lanes + l)] = F(c / D, c % D);
+  /// H = F - I of particle i.
+  Mat<D> displacement_gradient(Index i) const {
+    Pack H[D * D];
+    gradient(i / lanes, p_.u, H);
+    Mat<D> value;
+    for (int c = 0; c < D * D; ++c) value(c / D, c % D) = H[c][i % lanes];
+    return value;
+  }
+  /// P of particle i where its displacement gradient is H.
+  Mat<D> stress(Index i, const Mat<D>& H) const {
+    Pack gradient[D * D];
+    for (int c = 0; c < D * D; ++c) gradient[c] = pack(H(c / D, c % D));
+    std::array<double, D * D * lanes> block;
+    std::array<double, D * lanes> diagonal;
+    deform<D>(gradient, lanes, block.data(), diagonal.data());
     materials_[p_.material[static_cast<std::size_t>(i)]]->stress(
-        {lanes, lanes, block.data(), block.data(), nullptr});
+        {lanes, lanes, block.data(), block.data(), nullptr, diagonal.data()});
     Mat<D> P;
     for (int c = 0; c < D * D; ++c) P(c / D, c % D) = block[static_cast<std::size_t>(c * lanes)];
     return P;
   }
-  /// F of slice s, outside the step's loops.
-  void gradient(Index s, const Field& x, Pack (&F)[D * D]) const {
+  /// grad u of slice s, outside the step's loops.
+  void gradient(Index s, const Field& u, Pack (&H)[D * D]) const {
     with_payload<D>(op_, pairs_, p_.X, [&](const auto& payload) {
-      gradient_of_slice<D>(s, pairs_, payload, Columns<D>(x), {op_, s}, F);
+      gradient_of_slice<D>(s, pairs_, payload, Columns<D>(u), {op_, s}, H);
     });
-    add_offset(s, F);
-  }
-  TAUT_INLINE void add_offset(Index s, Pack (&F)[D * D]) const {
-    if (op_.F0.empty()) return;
-    for (int k = 0; k < D * D; ++k) F[k] += load(op_.F0.component(k) + s * lanes);
   }
   /// Lanes behind the last particle do as it does, so that they neither break nor widen the bounds.
-  void fill_padding(Index s, Pack (&F)[D * D]) const {
+  void fill_padding(Index s, Pack (&H)[D * D]) const {
     const int used = p_.n - s * lanes;
     for (int l = used; l < lanes; ++l)
-      for (int k = 0; k < D * D; ++k) F[k][l] = F[k][used - 1];
+      for (int k = 0; k < D * D; ++k) H[k][l] = H[k][used - 1];
   }
 
   MaterialGroups groups_;

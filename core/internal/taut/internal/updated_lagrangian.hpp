@@ -69,11 +69,14 @@ class UpdatedLagrangian : public Formulation<D> {
   std::int64_t pairs() const override { return list_.pairs().pairs(); }
   std::int64_t rebuilds() const override { return list_.builds() - 1; }
   std::size_t bytes() const override {
-    return list_.pairs().bytes() + rho_.bytes() * 2 + rho_material_.bytes() * 2 + s_.bytes() * 2 + T_.bytes();
+    return list_.pairs().bytes() + x_.bytes() + rho_.bytes() * 2 + rho_material_.bytes() * 2 +
+           s_.bytes() * 2 + T_.bytes();
   }
 
  protected:
-  PointView<D> points() const { return points_of<D>(p_.x, p_.total); }
+  PointView<D> points() const { return points_of<D>(x_, p_.total); }
+  /// x = X + u of all particles, mirror images included.
+  void update_positions();
   /// Brings the pair list up to date; false, with `failure` set, where the particles are in no state to have one.
   bool update_list();
   /// T = sigma / rho^2 of all particles, mirror images included.
@@ -101,6 +104,7 @@ class UpdatedLagrangian : public Formulation<D> {
   KernelTable table_;
   std::vector<const Hypoelastic<D>*> materials_;
   VerletList<D> list_;
+  Field x_;  ///< current positions, as of the last `update_rates`
   Field rho_, rho_rate_, rho_material_, rho_material_rate_, s_, s_rate_, T_;
   std::vector<std::array<Index, 2>> nearest_;  // pairs that touch in the reference configuration
 };
@@ -135,7 +139,8 @@ UpdatedLagrangian<D>::UpdatedLagrangian(const FormulationSetup<D>& setup)
   std::fill(rho_material_.flat().begin(), rho_material_.flat().end(), 1.0);
   for (Index i = 0; i < p_.n; ++i)
     rho_.component(0)[i] = rho_material_.component(0)[i] = p_.materials[p_.material[static_cast<std::size_t>(i)]]->density();
-  if (!p_.mirror.empty()) p_.mirror.positions(p_.x);
+  x_ = Field(n, D);
+  update_positions();
   list_.update(points());
   // Slightly more than the spacing of the lattice: what is adjacent along its axes.
   const double touching = 1.2 * p_.dx;
@@ -146,10 +151,20 @@ UpdatedLagrangian<D>::UpdatedLagrangian(const FormulationSetup<D>& setup)
 }
 
 template <int D>
+void UpdatedLagrangian<D>::update_positions() {
+  const auto n = static_cast<std::int64_t>(x_.flat().size());
+  const double *X = p_.X.data(), *u = p_.u.data();
+  double* x = x_.data();
+#pragma omp parallel for simd schedule(static) if (p_.n > parallel_from)
+  for (std::int64_t i = 0; i < n; ++i) x[i] = X[i] + u[i];
+  if (!p_.mirror.empty()) p_.mirror.positions(x_);
+}
+
+template <int D>
 bool UpdatedLagrangian<D>::update_list() {
   if (this->failure_) return false;
   for (Index i = 0; i < p_.n; ++i)
-    if (!p_.x.template vec<D>(i).allFinite()) {
+    if (!x_.template vec<D>(i).allFinite()) {
       this->failure_ = Failure{"not a number", i};
       return false;
     }
@@ -162,7 +177,7 @@ bool UpdatedLagrangian<D>::update_list() {
     double least = std::numeric_limits<double>::max();
     for (Index a = 0; a < p_.n; ++a)
       list_.pairs().for_each(a, [&](Index b, std::int64_t, int) {
-        const double r2 = (p_.x.template vec<D>(a) - p_.x.template vec<D>(b)).squaredNorm();
+        const double r2 = (x_.template vec<D>(a) - x_.template vec<D>(b)).squaredNorm();
         if (r2 < least) {
           least = r2;
           closest.particle = a;
@@ -180,7 +195,7 @@ void UpdatedLagrangian<D>::inspect() {
   // The widest gap is where the body tears.
   double widest = table_.support() * table_.support();
   for (const auto& [a, b] : nearest_) {
-    const double r2 = (p_.x.template vec<D>(a) - p_.x.template vec<D>(b)).squaredNorm();
+    const double r2 = (x_.template vec<D>(a) - x_.template vec<D>(b)).squaredNorm();
     if (r2 <= widest) continue;
     widest = r2;
     this->failure_ = Failure{"lost neighbours", a};
@@ -211,10 +226,8 @@ TAUT_INLINE void invert(const Pack (&A)[D * D], Pack (&B)[D * D]) {
 
 template <int D>
 void UpdatedLagrangian<D>::update_rates(double) {
-  if (!p_.mirror.empty()) {
-    p_.mirror.positions(p_.x);
-    p_.mirror.vectors(p_.v);
-  }
+  update_positions();
+  if (!p_.mirror.empty()) p_.mirror.vectors(p_.v);
   if (!update_list()) return;
   const bool corrected = this->method_.velocity_gradient == "corrected";
   const double* m = p_.m.component(0);
@@ -226,14 +239,14 @@ void UpdatedLagrangian<D>::update_rates(double) {
       const Index i = s * lanes;
       Pack xi[D], vi[D], sum[D * D], moment[D * D];
       for (int d = 0; d < D; ++d) {
-        xi[d] = load(p_.x.component(d) + i);
+        xi[d] = load(x_.component(d) + i);
         vi[d] = load(p_.v.component(d) + i);
       }
       for (int k = 0; k < D * D; ++k) sum[k] = moment[k] = pack(0);
       for_slots(s, [&](auto&& at) TAUT_INLINE_LAMBDA {
         Pack xab[D], vab[D], r2 = pack(0);
         for (int d = 0; d < D; ++d) {
-          xab[d] = at(p_.x.component(d)) - xi[d];
+          xab[d] = at(x_.component(d)) - xi[d];
           vab[d] = at(p_.v.component(d)) - vi[d];
           r2 += xab[d] * xab[d];
         }
@@ -339,7 +352,7 @@ void UpdatedLagrangian<D>::acceleration_pass(const Term& term) {
     const Index i = s * lanes;
     Pack xi[D], vi[D], Ti[S], a[D];
     for (int d = 0; d < D; ++d) {
-      xi[d] = load(p_.x.component(d) + i);
+      xi[d] = load(x_.component(d) + i);
       vi[d] = load(p_.v.component(d) + i);
       a[d] = pack(0);
     }
@@ -348,7 +361,7 @@ void UpdatedLagrangian<D>::acceleration_pass(const Term& term) {
     for_slots(s, [&](auto&& at) TAUT_INLINE_LAMBDA {
       Pack xab[D], r2 = pack(0);
       for (int d = 0; d < D; ++d) {
-        xab[d] = at(p_.x.component(d)) - xi[d];
+        xab[d] = at(x_.component(d)) - xi[d];
         r2 += xab[d] * xab[d];
       }
       const Pack w = -at(m) * table_.slope_over_r(r2);

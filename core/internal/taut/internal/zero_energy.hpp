@@ -11,20 +11,21 @@
 namespace taut {
 
 /// Penalty on the part of neighbours' motion that the gradients do not see, derived from the energy
-///   1/4 sum_a sum_b k_ab |x_ab - F_a X_ab|^2,   k_ab = alpha E V_a V_b W_ab / |X_ab|^2.
+///   1/4 sum_a sum_b k_ab |u_ab - H_a X_ab|^2,   k_ab = alpha E V_a V_b W_ab / |X_ab|^2,
+/// u_ab - H_a X_ab = x_ab - F_a X_ab with H = F - I: displacements keep the digits of small ones.
 /// The stiffness is that of Ganzenmueller (CMAME 286, 2015, eq. 19-21); his force is the first of the two
 /// parts here, projected on the current pair vector, and is the derivative of no energy. The force on a is
-///   sum_b k_ab (x_ab - 1/2 (F_a + F_b) X_ab)
-/// and what the operator's adjoint makes of V_a P_a = -1/2 sum_b k_ab (x_ab - F_a X_ab) (x) X_ab beside the
-/// material's stress. Without that part, which vanishes only where F is the least squares fit with weights k,
+///   sum_b k_ab (u_ab - 1/2 (H_a + H_b) X_ab)
+/// and what the operator's adjoint makes of V_a P_a = -1/2 sum_b k_ab (u_ab - H_a X_ab) (x) X_ab beside the
+/// material's stress. Without that part, which vanishes only where H is the least squares fit with weights k,
 /// the control feeds motions on irregular clouds. Both momenta are kept as the operator keeps them. The
-/// energy is quadratic in the positions: its stiffness does not depend on the state.
+/// energy is quadratic in the displacements: its stiffness does not depend on the state.
 template <int D>
 class ZeroEnergyControl {
  public:
   ZeroEnergyControl(const Particles<D>& p, const PairList& pairs, const Kernel& kernel, double h,
                     double alpha)
-      : p_(p), pairs_(pairs), F_(static_cast<std::size_t>(p.total), D * D) {
+      : p_(p), pairs_(pairs), H_(static_cast<std::size_t>(p.total), D * D) {
     stiffness_ = AlignedArray<float>(static_cast<std::size_t>(pairs.slots()) * lanes);
     const double* V = p.V.component(0);
 #pragma omp parallel for schedule(dynamic, 64)
@@ -39,20 +40,20 @@ class ZeroEnergyControl {
         });
   }
 
-  /// Keeps the deformation gradients of a slice for what follows.
-  TAUT_INLINE void keep(Index s, const Pack (&F)[D * D]) {
-    for (int c = 0; c < D * D; ++c) store(F_.component(c) + s * lanes, F[c]);
+  /// Keeps the displacement gradients of a slice for what follows.
+  TAUT_INLINE void keep(Index s, const Pack (&H)[D * D]) {
+    for (int c = 0; c < D * D; ++c) store(H_.component(c) + s * lanes, H[c]);
   }
-  Field& deformation() { return F_; }
+  Field& gradients() { return H_; }
 
   /// Adds V_a P_a M_a of the eight particles of a slice to Q.
-  void add_stress(Index s, const Columns<D>& x, const SliceCoefficients<D>& of, Field& Q) const {
-    Pack F[D * D], moment[D * D];
+  void add_stress(Index s, const Columns<D>& u, const SliceCoefficients<D>& of, Field& Q) const {
+    Pack H[D * D], moment[D * D];
     for (int c = 0; c < D * D; ++c) {
-      F[c] = load(F_.component(c) + s * lanes);
+      H[c] = load(H_.component(c) + s * lanes);
       moment[c] = pack(0);
     }
-    for_residuals(s, x, F, [&](Pack k, const Pack(&X)[D], const Pack(&residual)[D]) TAUT_INLINE_LAMBDA {
+    for_residuals(s, u, H, [&](Pack k, const Pack(&X)[D], const Pack(&residual)[D]) TAUT_INLINE_LAMBDA {
       for (int d = 0; d < D; ++d) {
         const Pack along = k * residual[d];
         for (int e = 0; e < D; ++e) moment[d * D + e] += along * X[e];
@@ -65,46 +66,46 @@ class ZeroEnergyControl {
       }
   }
 
-  /// Adds the forces along pairs of the eight particles of a slice. Needs F of its neighbours.
-  void add_to(Index s, const Columns<D>& x, Pack (&force)[D]) const {
+  /// Adds the forces along pairs of the eight particles of a slice. Needs H of its neighbours.
+  void add_to(Index s, const Columns<D>& u, Pack (&force)[D]) const {
     const Columns<D> X(p_.X);
-    const Columns<D * D> F(F_);
+    const Columns<D * D> H(H_);
     const Index i = s * lanes;
     for_slots(pairs_, s, [&](std::int64_t k, auto&& at) TAUT_INLINE_LAMBDA {
       const Pack stiffness = load(stiffness_.data() + k * lanes);
       Pack half[D];
       for (int e = 0; e < D; ++e) half[e] = 0.5 * (at(X.c[e]) - load(X.c[e] + i));
       for (int d = 0; d < D; ++d) {
-        Pack residual = at(x.c[d]) - load(x.c[d] + i);
-        for (int e = 0; e < D; ++e) residual -= (load(F.c[d * D + e] + i) + at(F.c[d * D + e])) * half[e];
+        Pack residual = at(u.c[d]) - load(u.c[d] + i);
+        for (int e = 0; e < D; ++e) residual -= (load(H.c[d * D + e] + i) + at(H.c[d * D + e])) * half[e];
         force[d] += stiffness * residual;
       }
     });
   }
 
-  /// Energies [J] of the eight particles of a slice, whose deformation gradients are given.
-  Pack energy(Index s, const Columns<D>& x, const Pack (&F)[D * D]) const {
+  /// Energies [J] of the eight particles of a slice, whose displacement gradients are given.
+  Pack energy(Index s, const Columns<D>& u, const Pack (&H)[D * D]) const {
     Pack sum = pack(0);
-    for_residuals(s, x, F, [&](Pack k, const Pack(&)[D], const Pack(&residual)[D]) TAUT_INLINE_LAMBDA {
+    for_residuals(s, u, H, [&](Pack k, const Pack(&)[D], const Pack(&residual)[D]) TAUT_INLINE_LAMBDA {
       for (int d = 0; d < D; ++d) sum += k * residual[d] * residual[d];
     });
     return 0.25 * sum;
   }
 
-  std::size_t bytes() const { return F_.bytes() + stiffness_.bytes(); }
+  std::size_t bytes() const { return H_.bytes() + stiffness_.bytes(); }
 
  private:
-  // Calls f(k_ab, X_ab, x_ab - F_a X_ab) for each slot of a slice; k is zero in lanes without a pair.
+  // Calls f(k_ab, X_ab, u_ab - H_a X_ab) for each slot of a slice; k is zero in lanes without a pair.
   template <class Use>
-  TAUT_INLINE void for_residuals(Index s, const Columns<D>& x, const Pack (&F)[D * D], Use&& f) const {
+  TAUT_INLINE void for_residuals(Index s, const Columns<D>& u, const Pack (&H)[D * D], Use&& f) const {
     const Columns<D> X(p_.X);
     const Index i = s * lanes;
     for_slots(pairs_, s, [&](std::int64_t k, auto&& at) TAUT_INLINE_LAMBDA {
       Pack Xab[D], residual[D];
       for (int e = 0; e < D; ++e) Xab[e] = at(X.c[e]) - load(X.c[e] + i);
       for (int d = 0; d < D; ++d) {
-        residual[d] = at(x.c[d]) - load(x.c[d] + i);
-        for (int e = 0; e < D; ++e) residual[d] -= F[d * D + e] * Xab[e];
+        residual[d] = at(u.c[d]) - load(u.c[d] + i);
+        for (int e = 0; e < D; ++e) residual[d] -= H[d * D + e] * Xab[e];
       }
       f(load(stiffness_.data() + k * lanes), Xab, residual);
     });
@@ -116,7 +117,7 @@ class ZeroEnergyControl {
 
   const Particles<D>& p_;
   const PairList& pairs_;
-  Field F_;
+  Field H_;
   AlignedArray<float> stiffness_;
 };
 

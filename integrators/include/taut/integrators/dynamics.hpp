@@ -13,8 +13,9 @@ struct Evolved {
   std::span<const double> rate;
 };
 
-/// Positions, velocities and further evolved variables of a system, as flat arrays whose meaning the integrator does
-/// not know. Arrays stay where they are for the life of the object.
+/// Positions, velocities and further evolved variables of a system, as flat arrays whose meaning the
+/// integrator does not know: positions may be counted from anywhere, such as the places at rest. Arrays stay
+/// where they are for the life of the object.
 class Dynamics {
  public:
   virtual ~Dynamics() = default;

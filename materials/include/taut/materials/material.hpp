@@ -42,6 +42,9 @@ struct StressBlock {
   /// plane stress. Both or neither; only for laws that `has_lateral_state()`.
   double* P_lateral = nullptr;
   double* F_lateral = nullptr;
+  /// Diagonal of H = F - I, component i of particle p at [i * stride + p], to the digits that F itself has no
+  /// room for where strains are small; or null.
+  const double* H_diagonal = nullptr;
 };
 
 /// Common part of all materials.
