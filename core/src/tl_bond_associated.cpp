@@ -317,8 +317,10 @@ double TlBondAssociated<D>::stiffest_mode(const LawsAtRest& laws) {
     opposite.template stress<D>({n, chunk, H, P, nullptr});
   };
   const double eigenvalue = largest_eigenvalue<D>(p_.n, p_.total, p_.m, p_.a, [&](Field& y) {
+    p_.tie(y);
     if (!p_.mirror.empty()) p_.mirror.vectors(y);
     accelerations(Columns<D>(y), false, stresses);
+    p_.tie(p_.a);
   });
   std::fill(p_.a.flat().begin(), p_.a.flat().end(), 0.0);
   return eigenvalue;

@@ -6,6 +6,7 @@
 #include <taut/boundary/mirror.hpp>
 #include <taut/core/geometry.hpp>
 #include <taut/core/particles.hpp>
+#include <taut/internal/interfaces.hpp>
 #include <taut/materials/material.hpp>
 #include <vector>
 
@@ -17,11 +18,12 @@ template <int D>
 std::vector<double> multiplicity(const Cloud<D>& cloud, const std::vector<typename MirrorMap<D>::Plane>& planes);
 
 /// Orders the particles of a cloud for locality and lays out their state, mirror images within `reach` [m] of the
-/// planes behind them. `material[id]` indexes `materials`.
+/// planes behind them. `material[id]` indexes `materials`. Where `interfaces` are given masses are those of the parts that
+/// materials have of particles, and with `twins` a particle of several parts becomes one for each, tied together.
 /// \throws InputError for a cloud without particles, volumes that are not positive, or a plane that cuts the body.
 template <int D>
 Particles<D> assemble(const Cloud<D>& cloud, std::vector<std::shared_ptr<const Material<D>>> materials,
                       const std::vector<std::uint8_t>& material, const std::vector<typename MirrorMap<D>::Plane>& planes,
-                      double reach);
+                      double reach, const Interfaces<D>* interfaces = nullptr, bool twins = false);
 
 }  // namespace taut

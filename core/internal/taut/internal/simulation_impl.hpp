@@ -11,6 +11,7 @@
 #include <taut/core/simulation.hpp>
 #include <taut/integrators/integrator.hpp>
 #include <taut/integrators/step_control.hpp>
+#include <taut/internal/interfaces.hpp>
 #include <vector>
 
 namespace taut {
@@ -26,6 +27,7 @@ struct SimulationImpl {
   Method method;
   std::vector<std::shared_ptr<const Material<D>>> materials;
   std::vector<std::uint8_t> material;  // of each user's particle
+  std::unique_ptr<Interfaces<D>> interfaces;  // where cells are known and there are several materials
   std::vector<typename MirrorMap<D>::Plane> planes;
   std::vector<std::function<void()>> conditions;  // boundary conditions, applied when places are known
   std::function<Vec<D>(const Vec<D>&)> initial_velocity, initial_displacement;
@@ -47,7 +49,9 @@ struct SimulationImpl {
   // Throws when a set-up call comes too late, and gives the ids that `where` selects.
   std::vector<Index> select(const Where<D>& where, const char* what) const;
   void must_be_open(const char* what) const;
-  std::vector<Index> places(std::vector<Index> ids) const;
+  std::vector<Index> places(std::vector<Index> ids) const;  // all twins
+  // The interfaces, if the method resolves them; else null.
+  const Interfaces<D>* met() const;
   void add_load(const std::vector<Index>& ids, const Vec<D>& force, History history);
 };
 

@@ -8,6 +8,7 @@
 #include <taut/internal/hyperelastic_form.hpp>
 #include <taut/internal/material_groups.hpp>
 #include <taut/internal/pair_passes.hpp>
+#include <taut/internal/pair_rule.hpp>
 #include <taut/neighbors/search.hpp>
 
 namespace taut {
@@ -26,7 +27,8 @@ class TotalLagrangian : public HyperelasticForm<D> {
         kernel_(setup.method.kernel, D),
         h_(setup.method.support_dx * p_.dx / kernel_.radius_factor()) {
     pairs_ = find_pairs<D>(points_of<D>(p_.X, p_.total), setup.method.support_dx * p_.dx,
-                           {search_method(setup.method.neighbours)});
+                           {search_method(setup.method.neighbours), !p_.ties.empty()});
+    if (p_.rule) filter_pairs(pairs_, [&rule = *p_.rule](Index a, Index b) { return rule.counts(a, b); });
     op_ = make_operator<D>(setup.method, p_, pairs_, kernel_, h_);
     Q_ = Field(static_cast<std::size_t>(p_.total), D * D);
   }
