@@ -113,9 +113,8 @@ void Interfaces<D>::share_out(const Cloud<D>& cloud) {
       std::int64_t all = 0;
       for (auto sum = a.sum.begin(); sum != end; ++sum) all += sum->own;
       for (auto sum = a.sum.begin(); sum != end; ++sum) {
-        MaterialPart<D> part{sum->material,
-                             cloud.V[id] * (static_cast<double>(sum->own) / static_cast<double>(all)),
-                             {}};
+        MaterialPart<D> part{
+            sum->material, cloud.V[id] * (static_cast<double>(sum->own) / static_cast<double>(all)), {}};
         for (int d = 0; d < D; ++d)
           part.B[d] = -area[d] * static_cast<double>(sum->excess[static_cast<std::size_t>(d)]);
         parts_.push_back(part);

@@ -98,8 +98,8 @@ std::shared_ptr<const PairRule<D>> PairRule<D>::make(const Cloud<D>& cloud, cons
 template <int D>
 bool PairRule<D>::leaves(Index a, Index b) const {
   const Vec<D>&na = normals_[static_cast<std::size_t>(a)], &nb = normals_[static_cast<std::size_t>(b)];
-  const Vec<D> X = p_->X.template vec<D>(static_cast<std::size_t>(b)) -
-                   p_->X.template vec<D>(static_cast<std::size_t>(a));
+  const Vec<D> X =
+      p_->X.template vec<D>(static_cast<std::size_t>(b)) - p_->X.template vec<D>(static_cast<std::size_t>(a));
   const double r = X.norm(), out_a = na.dot(X), out_b = -nb.dot(X);
   constexpr double away = 0.85, towards = 0.4;
   return out_a > away * r || out_b > away * r || (out_a > towards * r && out_b > towards * r);
@@ -110,8 +110,7 @@ bool PairRule<D>::counts(Index a, Index b) const {
   if (!visibility_) return !leaves(a, b);
   const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
   if (!label_.empty() && label_[i] != label_[j]) return false;
-  return visibility_->connects(sites_[i], sites_[j],
-                               label_.empty() ? Visibility<D>::any : label_[i]);
+  return visibility_->connects(sites_[i], sites_[j], label_.empty() ? Visibility<D>::any : label_[i]);
 }
 
 template <int D>

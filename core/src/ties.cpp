@@ -6,7 +6,8 @@ template <int D>
 void Particles<D>::tie(Field& vectors) const {
   const double* mass = m.component(0);
   for (std::size_t k = 0; k + 1 < ties.begin.size(); ++k) {
-    const Index *from = ties.particles.data() + ties.begin[k], *to = ties.particles.data() + ties.begin[k + 1];
+    const Index *from = ties.particles.data() + ties.begin[k],
+                *to = ties.particles.data() + ties.begin[k + 1];
     double masses = 0;
     for (const Index* i = from; i < to; ++i) masses += mass[*i];
     for (int d = 0; d < D; ++d) {

@@ -19,7 +19,9 @@ std::shared_ptr<const Material<D>> linear(const MaterialParameters& p) {
   return make_material<D>("linear_elastic", p);
 }
 
-/// Two bars in series, the stiff one held, pulled by 1000 Pa.
+/// Displacement of two bars in series, the stiff one held, pulled by 1000 Pa.
+double exact(double x) { return x < 0.1 ? 1e-5 * x : 1e-6 + 1e-3 * (x - 0.1); }
+
 template <int D>
 Simulation<D> series(const Method& method, const LatticeOptions& lattice) {
   Vec<D> max = Vec<D>::Constant(0.04);
@@ -28,32 +30,37 @@ Simulation<D> series(const Method& method, const LatticeOptions& lattice) {
   s.set_material([](const Vec<D>& X) { return X[0] < 0.1 + 1e-9; }, linear<D>(stiff));
   for (int d = 0; d < D; ++d) s.roller(s.face(std::string(1, "xyz"[d]) + "_min"), d);
   s.load(s.face("x_max"), std::pow(0.04, D - 1) * 1000 * Vec<D>::Unit(0));
-  CHECK(s.relax({.tolerance = 1e-11}).status == Status::ok);
   return s;
 }
 
+/// Checks that the exact displacement is in equilibrium, with the right stress and mass.
 template <int D>
-void check_series(const Method& method, const LatticeOptions& lattice, double tolerance) {
+void check_series(const Method& method, const LatticeOptions& lattice, double tolerance,
+                  double of_forces = 0) {
   CAPTURE(method.formulation);
   CAPTURE(method.operators);
   CAPTURE(lattice.dx);
   CAPTURE(lattice.jitter);
-  const Simulation<D> s = series<D>(method, lattice);
-  double of_motion = 0, of_stress = 0, of_recovered = 0, mass = 0;
-  const auto recovered = StressRecovery<D>(s).cauchy_stress();
+  Simulation<D> s = series<D>(method, lattice);
+  s.set_displacement([](const Vec<D>& X) { return Vec<D>(exact(X[0]) * Vec<D>::Unit(0)); });
+  s.prepare();
+  double stress = 0, recovered = 0, mass = 0, force = 0;
+  const auto P = StressRecovery<D>(s).first_piola_kirchhoff();
   for (std::size_t i = 0; i < s.size(); ++i) {
-    const double x = s.reference_position(i)[0];
-    const double u = x < 0.1 ? 1e-5 * x : 1e-6 + 1e-3 * (x - 0.1);
-    of_motion = std::max(of_motion, std::abs(s.displacement(i)[0] - u) / 1.01e-4);
-    of_stress = std::max(of_stress, std::abs(s.cauchy_stress(i)(0, 0) / 1000 - 1));
-    of_recovered = std::max(of_recovered, std::abs(recovered[i](0, 0) / 1000 - 1));
+    // Of cells on both sides, the mean.
+    const bool between =
+        method.formulation == "tl_stress_points" && std::abs(s.reference_position(i)[0] - 0.1) < 1e-6;
+    if (!between) stress = std::max(stress, std::abs(s.first_piola_kirchhoff(i)(0, 0) / 1000 - 1));
+    recovered = std::max(recovered, std::abs(P[i](0, 0) / 1000 - 1));
     mass += s.mass(i);
   }
-  // Of linear elasticity: the Cauchy stress is that of the first kind, turned and stretched by 1e-3.
-  CHECK(of_motion < tolerance);
-  CHECK(of_stress < 10 * tolerance + 2e-3);
-  CHECK(of_recovered < 10 * tolerance + 2e-3);
+  CHECK(stress < tolerance);
+  CHECK(recovered < tolerance);
   CHECK(mass == doctest::Approx(0.1 * 8000 * std::pow(0.04, D - 1)).epsilon(1e-12));
+  const double dt = 1e-10;
+  s.run(dt, {.cfl = 1e3, .max_step = dt});
+  for (std::size_t i = 0; i < s.size(); ++i) force = std::max(force, s.mass(i) * s.velocity(i).norm() / dt);
+  CHECK(force < std::max(tolerance, of_forces) * 1000 * std::pow(0.02, D - 1));
 }
 
 Method with(const char* formulation, const char* operators, double support_dx = 1.5) {
@@ -81,14 +88,15 @@ TEST_CASE_TEMPLATE("bars in series are exact, on either side of the interface", 
   constexpr int D = Dimension::value;
   for (const double dx : {0.02, 0.01}) {
     if (D == 3 && dx < 0.02) continue;
-    for (const char* operators : {"corrected", "compatible"}) {
-      check_series<D>(with("tl_displacement", operators), {.dx = dx}, 1e-9);
-      check_series<D>(with("tl_bond_associated", operators), {.dx = dx}, 1e-9);
-    }
+    // `corrected` leaves 1e-5 of a constant stress inside; bonds, next to faces of 2D and 3D bodies, some
+    // per cent.
+    check_series<D>(with("tl_displacement", "corrected"), {.dx = dx}, 1e-9, 2e-5);
+    check_series<D>(with("tl_displacement", "compatible"), {.dx = dx}, 1e-9);
+    check_series<D>(with("tl_bond_associated", "corrected"), {.dx = dx}, 1e-9, D == 1 ? 0 : 0.05);
     check_series<D>(with("tl_stress_points", "corrected"), {.dx = dx, .cells = true}, 1e-9);
   }
   // Spacings that differ along the axes.
-  check_series<D>(with("tl_displacement", "compatible"), {.dx = 0.013}, 1e-6);
+  check_series<D>(with("tl_displacement", "compatible"), {.dx = 0.0125}, 1e-9);
 }
 
 TEST_CASE("bars in series on jittered lattices are as exact as the closure") {
@@ -97,7 +105,18 @@ TEST_CASE("bars in series on jittered lattices are as exact as the closure") {
   check_series<2>(method, {.dx = 0.02, .jitter = 0.2}, 1e-8);
 }
 
-TEST_CASE_TEMPLATE("masses are those of the cells, for any materials", Dimension, Dim<1>, Dim<2>, Dim<3>) {
+TEST_CASE("the end of bars in series comes to rest where it should") {
+  Simulation<2> s = series<2>(with("tl_displacement", "compatible"), {.dx = 0.02});
+  CHECK(s.relax({.tolerance = 1e-8}).status == Status::ok);
+  CHECK(s.displacement_at({0.2, 0.02})[0] == doctest::Approx(1.01e-4).epsilon(1e-8));
+  CHECK(s.displacement_at({0.1, 0.02})[0] == doctest::Approx(1e-6).epsilon(1e-6));
+  // Bonds are as far off as in a bar of one material, and no further.
+  Simulation<2> bonds = series<2>(with("tl_bond_associated", "corrected"), {.dx = 0.02});
+  CHECK(bonds.relax({.tolerance = 1e-8}).status == Status::ok);
+  CHECK(bonds.displacement_at({0.2, 0.02})[0] == doctest::Approx(1.01e-4 * (1 - 0.0071)).epsilon(2e-4));
+}
+
+TEST_CASE_TEMPLATE("masses are those of the cells, for any materials", Dimension, Dim<2>, Dim<3>) {
   constexpr int D = Dimension::value;
   Vec<D> max = Vec<D>::Constant(0.8);
   max[0] = 1;
@@ -111,25 +130,21 @@ TEST_CASE_TEMPLATE("masses are those of the cells, for any materials", Dimension
       s.set_material([](const Vec<D>& X) { return X[0] > 0.5 && X[D - 1] < 0.4; },
                      linear<D>({.E = 1e5, .nu = 0.4, .density = 13.7}));
       const double volume = std::pow(0.8, D - 1);
-      const double expected =
-          D == 1 ? 0.4 * 2700 + 0.5 * 1000 + 0.1 * 2700
-                 : volume / 2 * (1000 + 0.5 * 2700 + 0.5 * 13.7);
+      const double expected = volume / 2 * (1000 + 0.5 * 2700 + 0.5 * 13.7);
       const auto sum = [&] {
         double mass = 0;
         for (std::size_t i = 0; i < s.size(); ++i) mass += s.mass(i);
         return mass;
       };
-      if (D > 1) {
-        CHECK(sum() == doctest::Approx(expected).epsilon(1e-12));
-      }
-      const double before = sum();
+      CHECK(sum() == doctest::Approx(expected).epsilon(1e-12));
       s.prepare();
-      CHECK(sum() == doctest::Approx(before).epsilon(1e-14));
+      CHECK(sum() == doctest::Approx(expected).epsilon(1e-12));
     }
 }
 
 TEST_CASE("bending across an interface converges with second order") {
-  const Method method = with("tl_displacement", "compatible");
+  Method method = with("tl_displacement", "compatible");
+  method.kernel = "quadratic";
   const double beam = 2.835e-4;
   const double four = bilayer(4, method), eight = bilayer(8, method);
   CHECK(four == doctest::Approx(2.42e-4).epsilon(0.02));
@@ -137,8 +152,7 @@ TEST_CASE("bending across an interface converges with second order") {
   CHECK((beam - four) / (beam - eight) > 3.2);
 }
 
-TEST_CASE_TEMPLATE("bodies of several materials keep momenta, and forces are derivatives", Dimension, Dim<1>,
-                   Dim<2>, Dim<3>) {
+TEST_CASE_TEMPLATE("bodies of several materials keep momenta and energy", Dimension, Dim<1>, Dim<2>, Dim<3>) {
   constexpr int D = Dimension::value;
   for (const char* formulation : {"tl_displacement", "tl_bond_associated"})
     for (const char* operators : {"corrected", "compatible"}) {
@@ -153,8 +167,8 @@ TEST_CASE_TEMPLATE("bodies of several materials keep momenta, and forces are der
       const Vec<D> momentum = s.linear_momentum();
       const Vec<3> angular = angular_momentum(s);
       const double energy = s.kinetic_energy() + s.strain_energy();
-      const auto result =
-          s.run(1e9, {.cfl = 0.4, .progress = [](std::int64_t steps, double, double) { return steps < 300; }});
+      const auto result = s.run(
+          1e9, {.cfl = 0.2, .progress = [](std::int64_t steps, double, double) { return steps < 300; }});
       CHECK(result.status == Status::ok);
       CHECK((s.linear_momentum() - momentum).norm() < 1e-12 * momentum.norm());
       CHECK((angular_momentum(s) - angular).norm() < 1e-11 * momentum.norm());
@@ -220,7 +234,8 @@ TEST_CASE("twins: one thread and two give the same bits") {
   const auto positions = [](int threads) {
     const int before = omp_get_max_threads();
     omp_set_num_threads(threads);
-    Simulation<2> s(brick<2>(65, 0.15), make_material<2>("neo_hookean", {.E = 1e6, .nu = 0.3, .density = 1000}),
+    Simulation<2> s(brick<2>(65, 0.15),
+                    make_material<2>("neo_hookean", {.E = 1e6, .nu = 0.3, .density = 1000}),
                     {.zero_energy_control = 0.1});
     s.set_material([](const Vec<2>& X) { return X[0] > 0.7; },
                    make_material<2>("neo_hookean", {.E = 1e7, .nu = 0.3, .density = 1000}));

@@ -97,8 +97,8 @@ TEST_CASE("pairs across slits of one cell and two do not count") {
       for (const int cells : {1, 2})
         for (const double support : {1.5, 2.4}) {
           const Cloud<2> cloud = slit_strip(cells, lattice, jitter);
-          Particles<2> p = assemble<2>(cloud, {rubber()}, std::vector<std::uint8_t>(cloud.size(), 0), {},
-                                       support * dx);
+          Particles<2> p =
+              assemble<2>(cloud, {rubber()}, std::vector<std::uint8_t>(cloud.size(), 0), {}, support * dx);
           const auto rule = PairRule<2>::make(cloud, p, {}, nullptr, support * dx);
           REQUIRE(rule);
           PairList pairs = find_pairs<2>(points_of<2>(p.X, p.n), support * dx);
@@ -205,9 +205,8 @@ TEST_CASE("stresses are not fitted across slits") {
   const Cloud<2> cloud = slit_strip(1);
   for (const char* formulation : {"tl_displacement", "tl_bond_associated"}) {
     Simulation<2> s(cloud, rubber(), {.formulation = formulation});
-    s.set_displacement([](const Vec<2>& X) {
-      return Vec<2>(X[1] > 0.55 ? 0.01 * std::max(0.0, X[0] - 1) : 0.0, 0);
-    });
+    s.set_displacement(
+        [](const Vec<2>& X) { return Vec<2>(X[1] > 0.55 ? 0.01 * std::max(0.0, X[0] - 1) : 0.0, 0); });
     s.prepare();
     const auto P = StressRecovery<2>(s).first_piola_kirchhoff();
     for (std::size_t i = 0; i < s.size(); ++i) {

@@ -17,11 +17,11 @@ using Site = std::array<Index, D>;
 /// What `make_cloud` filled. Says nothing of positions, so that clouds may be moved, turned and bent.
 template <int D>
 struct Occupancy {
-  bool nodes = true;         ///< particles on the corners of cells, else in their middle
-  std::array<Index, D> size{};  ///< cells along each axis, layers included
-  Vec<D> spacing;            ///< edges of a cell [m]
-  std::uint16_t whole = 1;   ///< fill of a cell all of which is body
-  bool gapless = true;       ///< every cell has a part of the body
+  bool nodes = true;                ///< particles on the corners of cells, else in their middle
+  std::array<Index, D> size{};      ///< cells along each axis, layers included
+  Vec<D> spacing;                   ///< edges of a cell [m]
+  std::uint16_t whole = 1;          ///< fill of a cell all of which is body
+  bool gapless = true;              ///< every cell has a part of the body
   std::vector<std::uint16_t> fill;  ///< of each cell, x fastest; empty where all are whole
   std::vector<Index> sites;  ///< numbers of the particles' sites, x fastest; empty where every site has one
   std::size_t particles = 0;

@@ -28,7 +28,7 @@ class TotalLagrangian : public HyperelasticForm<D> {
         h_(setup.method.support_dx * p_.dx / kernel_.radius_factor()) {
     pairs_ = find_pairs<D>(points_of<D>(p_.X, p_.total), setup.method.support_dx * p_.dx,
                            {search_method(setup.method.neighbours), !p_.ties.empty()});
-    if (p_.rule) filter_pairs(pairs_, [&rule = *p_.rule](Index a, Index b) { return rule.counts(a, b); });
+    if (p_.rule) filter_pairs(pairs_, [this](Index a, Index b) { return counts(a, b); });
     op_ = make_operator<D>(setup.method, p_, pairs_, kernel_, h_);
     Q_ = Field(static_cast<std::size_t>(p_.total), D * D);
   }
@@ -55,9 +55,22 @@ class TotalLagrangian : public HyperelasticForm<D> {
   }
 
   std::int64_t pairs() const override { return pairs_.pairs(); }
-  std::size_t bytes() const override { return pairs_.bytes() + op_.bytes() + Q_.bytes(); }
+  std::size_t bytes() const override {
+    return pairs_.bytes() + op_.bytes() + Q_.bytes() + (p_.rule ? p_.rule->bytes() : 0);
+  }
 
  protected:
+  bool counts(Index a, Index b) const {
+    if (!p_.rule->counts(a, b)) return false;
+    if (p_.ties.empty()) return true;  // the search says it
+    const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
+    if ((p_.X.template vec<D>(i) - p_.X.template vec<D>(j)).norm() > 1e-12 * p_.dx) return true;
+    const auto id = [&](Index k) {
+      return p_.id[static_cast<std::size_t>(k < p_.n ? k : p_.mirror.master(k - p_.n))];
+    };
+    throw InputError(fmt::format(
+        "particles {} and {} coincide: remove one of them, or move overlapping bodies apart", id(a), id(b)));
+  }
   /// P of particle i where its deformation gradient is F.
   Mat<D> stress(Index i, const Mat<D>& F) const {
     std::array<double, D * D * lanes> block{};

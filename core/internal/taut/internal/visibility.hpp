@@ -11,7 +11,8 @@
 namespace taut {
 
 /// Whether the straight way between two sites stays in the closed union of the cells of a label: along an
-/// edge or a face of cells one of those around it does. Cells beyond symmetry planes are as those before them.
+/// edge or a face of cells one of those around it does. Cells beyond symmetry planes are as those before
+/// them.
 template <int D>
 class Visibility {
  public:
