@@ -45,6 +45,7 @@ void CellStrips<D>::make_strips(const Particles<D>& p) {
             "rows along x, as make_cloud does",
             p.id[static_cast<std::size_t>(cell[c - 1])], p.id[static_cast<std::size_t>(cell[c])]));
     }
+    if (!p.cell_material.empty()) material = p.cell_material[static_cast<std::size_t>(order[q])];
     bool goes_on = !strips_.empty() && strips_.back().material == material;
     for (std::size_t r = 0; goes_on && r < rows; ++r)
       goes_on = cell[2 * r] == strips_.back().row[r] + strips_.back().count;

@@ -15,14 +15,15 @@ template <int D>
 struct Entry {
   const char* name;
   std::unique_ptr<Formulation<D>> (*make)(const FormulationSetup<D>&);
+  MaterialsMeet materials = MaterialsMeet::in_particles;
 };
 
 template <int D>
 const std::vector<Entry<D>>& formulation_registry() {
   static const std::vector<Entry<D>> entries = {
-      {"tl_displacement", make_tl_displacement<D>},
-      {"tl_bond_associated", make_tl_bond_associated<D>},
-      {"tl_stress_points", make_tl_stress_points<D>},
+      {"tl_displacement", make_tl_displacement<D>, MaterialsMeet::in_twins},
+      {"tl_bond_associated", make_tl_bond_associated<D>, MaterialsMeet::in_twins},
+      {"tl_stress_points", make_tl_stress_points<D>, MaterialsMeet::in_cells},
       {"ul_basic", make_ul_basic<D>},
       {"ul_artificial_stress", make_ul_artificial_stress<D>},
   };
@@ -35,6 +36,12 @@ std::vector<std::string> formulation_names() {
   std::vector<std::string> names;
   for (const auto& entry : formulation_registry<1>()) names.emplace_back(entry.name);
   return names;
+}
+
+MaterialsMeet materials_meet(std::string_view formulation) {
+  for (const auto& entry : formulation_registry<1>())
+    if (formulation == entry.name) return entry.materials;
+  return MaterialsMeet::in_particles;
 }
 
 template <int D>
@@ -52,6 +59,7 @@ Formulation<D>::Formulation(const FormulationSetup<D>& setup)
 template <int D>
 void Formulation<D>::finish_accelerations(double t) {
   loads_.add_to(t, p_.m, p_.a);
+  if (!p_.ties.empty()) p_.tie(p_.a);
   constraints_.apply_to_accelerations(p_.a);
 }
 

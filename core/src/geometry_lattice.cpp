@@ -8,6 +8,7 @@
 #include <taut/core/error.hpp>
 #include <taut/core/geometry.hpp>
 #include <taut/internal/local_origin.hpp>
+#include <taut/internal/occupancy.hpp>
 
 namespace taut {
 namespace {
@@ -291,6 +292,27 @@ void list_facets(const Grid<D>& grid, const std::vector<Fill>& fill, const std::
   }
 }
 
+// What the cloud keeps of its lattice: numbers of sites are filled in by the caller where not all have a
+// particle.
+template <int D>
+Occupancy<D> occupancy_of(const Grid<D>& grid, const std::vector<Fill>& fill, bool nodes, std::int64_t full) {
+  Occupancy<D> o;
+  o.nodes = nodes;
+  o.spacing = grid.spacing;
+  o.whole = static_cast<Fill>(full);
+  for (std::size_t d = 0; d < D; ++d) o.size[d] = static_cast<Index>(grid.size[d]);
+  std::vector<Fill> inner;
+  inner.reserve(o.cells());
+  for (std::int64_t row = 0; row < Grid<D>::rows(grid.size); ++row) {
+    const auto first =
+        fill.begin() + static_cast<std::ptrdiff_t>(grid.fill_at(Grid<D>::row_place(row, grid.size)));
+    inner.insert(inner.end(), first, first + static_cast<std::ptrdiff_t>(grid.size[0]));
+  }
+  o.gapless = std::all_of(inner.begin(), inner.end(), [](Fill f) { return f > 0; });
+  if (std::any_of(inner.begin(), inner.end(), [&](Fill f) { return f != o.whole; })) o.fill = std::move(inner);
+  return o;
+}
+
 }  // namespace
 
 template <int D>
@@ -340,6 +362,9 @@ Cloud<D> make_cloud(const Shape<D>& shape, const LatticeOptions& options) {
   cloud.V.resize(n);
   if (nodes) cloud.B.resize(n);
   if (grid.size != grid.cells) cloud.extra.resize(n);
+  auto body = std::make_shared<Occupancy<D>>(occupancy_of<D>(grid, fill, nodes, power(options.samples, D)));
+  body->particles = n;
+  if (!body->gapless) body->sites.resize(n);
 
   const std::int64_t full = power(options.samples, D);
   const std::int64_t interior = full * static_cast<std::int64_t>(stencil.size());
@@ -375,11 +400,13 @@ Cloud<D> make_cloud(const Shape<D>& shape, const LatticeOptions& options) {
         cloud.X[p] += options.jitter * grid.spacing.cwiseProduct(random_vector<D>(options.seed, place));
       cloud.V[p] = volume * static_cast<double>(own);
       if (!cloud.extra.empty()) cloud.extra[p] = extra;
+      if (!body->sites.empty()) body->sites[p] = static_cast<Index>(row * sites[0] + at[0]);
       ++p;
     }
   }
   if (!nodes) list_facets<D>(grid, fill, begin, full, cloud);
   if (options.cells) list_cells<D>(grid, fill, sites, begin, full, cloud);
+  cloud.body = std::move(body);
   return cloud;
 }
 

@@ -81,7 +81,8 @@ typename PatchFit<D>::Terms PatchFit<D>::functional(Index target) const {
 }
 
 template <int D>
-PatchFit<D>::PatchFit(const PatchPoints<D>& targets, const PatchPoints<D>& samples, double radius)
+PatchFit<D>::PatchFit(const PatchPoints<D>& targets, const PatchPoints<D>& samples, double radius,
+                      const std::function<bool(Index, Index)>& sees, bool coincident)
     : radius_(radius), X_(targets.X), samples_(samples.X), functional_(targets.X.size()) {
   if (!(radius > 0) || !std::isfinite(radius))
     throw InputError(fmt::format("patch fit: the radius {:g} must be positive", radius));
@@ -95,14 +96,15 @@ PatchFit<D>::PatchFit(const PatchPoints<D>& targets, const PatchPoints<D>& sampl
   if (!same)
     for (std::size_t k = 0; k < samples_.size(); ++k) all.set_vec<D>(X_.size() + k, samples_[k]);
   const Index first = same ? 0 : n;
-  const PairList pairs =
-      find_pairs<D>(points_of<D>(all, first + static_cast<Index>(samples_.size())), radius);
+  const PairList pairs = find_pairs<D>(points_of<D>(all, first + static_cast<Index>(samples_.size())), radius,
+                                       {.coincident = coincident});
   begin_.push_back(0);
   for (Index t = 0; t < n; ++t) {
     const Index group = targets.group[static_cast<std::size_t>(t)];
     if (same) patch_.push_back(t);
     pairs.for_each(t, [&](Index b, std::int64_t, int) {
-      if (b >= first && samples.group[static_cast<std::size_t>(b - first)] == group)
+      if (b >= first && samples.group[static_cast<std::size_t>(b - first)] == group &&
+          (!sees || sees(t, b - first)))
         patch_.push_back(b - first);
     });
     if (patch_.size() == begin_.back())

@@ -10,6 +10,8 @@
 #include <taut/integrators/integrator.hpp>
 #include <taut/internal/assembly.hpp>
 #include <taut/internal/local_origin.hpp>
+#include <taut/internal/formulations.hpp>
+#include <taut/internal/pair_rule.hpp>
 #include <taut/internal/simulation_impl.hpp>
 #include <taut/neighbors/search.hpp>
 
@@ -70,9 +72,24 @@ void SimulationImpl<D>::must_be_open(const char* what) const {
 }
 template <int D>
 std::vector<Index> SimulationImpl<D>::places(std::vector<Index> ids) const {
-  for (Index& i : ids) i = place(static_cast<std::size_t>(i));
-  std::sort(ids.begin(), ids.end());
-  return ids;
+  if (particles.ties.empty()) {
+    for (Index& i : ids) i = place(static_cast<std::size_t>(i));
+    std::sort(ids.begin(), ids.end());
+    return ids;
+  }
+  std::vector<bool> wanted(cloud.size(), false);
+  for (const Index id : ids) wanted[static_cast<std::size_t>(id)] = true;
+  std::vector<Index> all;
+  for (Index i = 0; i < particles.n; ++i)
+    if (wanted[static_cast<std::size_t>(particles.id[static_cast<std::size_t>(i)])]) all.push_back(i);
+  return all;
+}
+template <int D>
+const Interfaces<D>* SimulationImpl<D>::met() const {
+  return interfaces && interfaces->resolved() &&
+                 materials_meet(method.formulation) != MaterialsMeet::in_particles
+             ? interfaces.get()
+             : nullptr;
 }
 
 template <int D>
@@ -125,10 +142,13 @@ template <int D>
 void Simulation<D>::set_material(const Where<D>& where, std::shared_ptr<const Material<D>> material) {
   if (!material) throw InputError("set_material: no material");
   if (impl_->materials.size() == 255) throw InputError("set_material: at most 255 materials");
+  const auto number = static_cast<std::uint8_t>(impl_->materials.size());
   const std::vector<Index> ids = impl_->select_particles(where, "set_material");
   if (ids.empty()) throw InputError("set_material selects no particle");
-  for (const Index i : ids)
-    impl_->material[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(impl_->materials.size());
+  for (const Index i : ids) impl_->material[static_cast<std::size_t>(i)] = number;
+  if (!impl_->interfaces && Interfaces<D>::known(impl_->cloud))
+    impl_->interfaces = std::make_unique<Interfaces<D>>(impl_->cloud);
+  if (impl_->interfaces) impl_->interfaces->assign(impl_->cloud, where, number);
   impl_->materials.push_back(std::move(material));
 }
 
@@ -336,12 +356,21 @@ void Simulation<D>::prepare() {
   if (impl_->formulation) return;
   const auto start = std::chrono::steady_clock::now();
   SimulationImpl<D>& s = *impl_;
+  const bool areas_known = !s.cloud.B.empty() || !s.cloud.facets.empty();
+  const Interfaces<D>* interfaces = s.met();
+  const MaterialsMeet meet = materials_meet(s.method.formulation);
+  if (interfaces) interfaces->straighten(s.cloud);
   if (needs_areas(s.method.operators) && s.planes.empty()) enclose(s.cloud);
   open_facets_on<D>(s.planes, s.cloud);
   const double widest =
       s.cloud.spacing.empty() ? s.cloud.dx : *std::max_element(s.cloud.spacing.begin(), s.cloud.spacing.end());
   const double reach = s.method.support_dx * widest * (1 + s.method.skin);
-  s.particles = assemble<D>(s.cloud, s.materials, s.material, s.planes, reach);
+  const bool twins = interfaces && meet == MaterialsMeet::in_twins;
+  s.particles = assemble<D>(s.cloud, s.materials, s.material, s.planes, reach, interfaces, twins);
+  // Areas that are guesses tell nothing. Forms that find their neighbours anew let bodies meet.
+  if (meet != MaterialsMeet::in_particles && (areas_known || s.cloud.body))
+    s.particles.rule =
+        PairRule<D>::make(s.cloud, s.particles, s.planes, twins ? interfaces : nullptr, reach);
   if (!s.cloud.facets.empty()) s.place_facets();
   s.cloud.cells = {};  // the particles have them now
   s.cloud.cell_share = {};
@@ -457,7 +486,12 @@ Mat<D> Simulation<D>::deformation_gradient(std::size_t id) const {
 }
 template <int D>
 double Simulation<D>::mass(std::size_t id) const {
-  return impl_->cloud.V.at(id) * impl_->materials[impl_->material[id]]->density();
+  const double V = impl_->cloud.V.at(id);
+  const Interfaces<D>* interfaces = impl_->met();
+  if (!interfaces) return V * impl_->materials[impl_->material[id]]->density();
+  double mass = 0;
+  for (const auto& part : interfaces->parts(id)) mass += part.V * impl_->materials[part.material]->density();
+  return mass;
 }
 
 template <int D>
@@ -474,6 +508,12 @@ Vec<D> Simulation<D>::displacement_at(const Vec<D>& X) const {
   if (near.empty()) throw InputError("displacement_at: no particle within three spacings of the point");
   const double same = std::max(1e-6 * dx, coordinate_rounding(X.norm()));
   if (near.front().first < same * same) return displacement(near.front().second);
+  // Not across slits.
+  if (const auto& rule = impl_->particles.rule)
+    std::erase_if(near, [&, nearest = impl_->place(near.front().second)](const auto& other) {
+      const Index i = impl_->place(other.second);
+      return i != nearest && !rule->same_body(nearest, i);
+    });
   Fixed<D + 1> normal = Fixed<D + 1>::Zero();
   Fixed<D + 1, D> right = Fixed<D + 1, D>::Zero();
   for (const auto& [r2, i] : near) {

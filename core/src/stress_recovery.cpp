@@ -5,6 +5,7 @@
 #include <numeric>
 #include <taut/core/error.hpp>
 #include <taut/core/stress_recovery.hpp>
+#include <taut/internal/pair_rule.hpp>
 #include <taut/internal/simulation_impl.hpp>
 #include <taut/neighbors/search.hpp>
 
@@ -30,6 +31,7 @@ class Groups {
 template <int D>
 struct Patches {
   PatchPoints<D> targets, samples;
+  std::vector<typename PairRule<D>::Sample> places;  ///< of the samples, where the particles have a rule
 };
 
 /// Particles and samples, in groups that the formulation couples and that are of one material.
@@ -49,6 +51,7 @@ Patches<D> find_patches(const SimulationImpl<D>& s) {
     }
     cells = cells || sample.particles.size() > 1;
     patches.samples.X.push_back(sample.X);
+    if (p.rule) patches.places.push_back(p.rule->sample(sample.particles, sample.material));
   });
   Groups groups(static_cast<std::size_t>(p.n) + links.size());
   std::vector<bool> linked(static_cast<std::size_t>(p.n), false);
@@ -58,7 +61,9 @@ Patches<D> find_patches(const SimulationImpl<D>& s) {
       linked[static_cast<std::size_t>(i)] = true;
     }
   if (!cells) {
-    const PairList pairs = find_pairs<D>(points_of<D>(p.X, p.n), s.method.support_dx * p.dx);
+    PairList pairs = find_pairs<D>(points_of<D>(p.X, p.n), s.method.support_dx * p.dx,
+                                   {.coincident = !p.ties.empty()});
+    if (p.rule) filter_pairs(pairs, [&](Index a, Index b) { return p.rule->counts(a, b); });
     for (Index i = 0; i < p.n; ++i)
       pairs.for_each(i, [&](Index b, std::int64_t, int) {
         if (b < i && material(b) == material(i)) groups.join(i, b);
@@ -81,7 +86,13 @@ PatchFit<D> make_fit(const SimulationImpl<D>& s, double support_dx) {
   if (!(support_dx >= 2) || support_dx > 20)
     throw InputError(fmt::format("stress recovery: support_dx = {:g} must lie between 2 and 20", support_dx));
   const Patches<D> patches = find_patches(s);
-  return PatchFit<D>(patches.targets, patches.samples, support_dx * s.particles.dx);
+  const Particles<D>& p = s.particles;
+  std::function<bool(Index, Index)> sees;
+  if (p.rule)
+    sees = [&](Index target, Index sample) {
+      return p.rule->sees(target, patches.places[static_cast<std::size_t>(sample)]);
+    };
+  return PatchFit<D>(patches.targets, patches.samples, support_dx * p.dx, sees, !p.ties.empty());
 }
 
 }  // namespace
@@ -97,9 +108,10 @@ std::vector<Mat<D>> StressRecovery<D>::recover(F&& of_sample) const {
   simulation_->formulation->visit_stresses(
       [&](const StressSample<D>& sample) { samples.push_back(of_sample(sample)); });
   const std::vector<Mat<D>> fitted = fit_(samples);
-  std::vector<Mat<D>> ordered(fitted.size());
-  for (std::size_t i = 0; i < fitted.size(); ++i)
-    ordered[static_cast<std::size_t>(simulation_->particles.id[i])] = fitted[i];
+  const std::vector<Index>& place = simulation_->particles.place;
+  std::vector<Mat<D>> ordered(place.size());
+  for (std::size_t id = 0; id < place.size(); ++id)
+    ordered[id] = fitted[static_cast<std::size_t>(place[id])];
   return ordered;
 }
 

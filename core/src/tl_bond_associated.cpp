@@ -315,8 +315,10 @@ double TlBondAssociated<D>::stiffest_mode(const LawsAtRest& laws) {
     opposite.template stress<D>(block);
   };
   const double eigenvalue = largest_eigenvalue<D>(p_.n, p_.total, p_.m, p_.a, [&](Field& y) {
+    p_.tie(y);
     if (!p_.mirror.empty()) p_.mirror.vectors(y);
     accelerations(Columns<D>(y), stresses);
+    p_.tie(p_.a);
   });
   std::fill(p_.a.flat().begin(), p_.a.flat().end(), 0.0);
   return eigenvalue;

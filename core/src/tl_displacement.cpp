@@ -200,6 +200,7 @@ double TlDisplacement<D>::stiffest_mode(const LawsAtRest& laws) {
   const Columns<D * D> Q(Q_);
   const double* m = p_.m.component(0);
   const auto apply = [&](Field& y) {
+    p_.tie(y);
     if (!p_.mirror.empty()) p_.mirror.vectors(y);
     const Columns<D> yc(y);
     with_payload<D>(op_, pairs_, p_.X, [&](const auto& payload) {
@@ -230,6 +231,7 @@ double TlDisplacement<D>::stiffest_mode(const LawsAtRest& laws) {
         for (int d = 0; d < D; ++d) store(p_.a.component(d) + s * lanes, -force[d] / mass);
       }
     });
+    p_.tie(p_.a);
   };
   const double eigenvalue = largest_eigenvalue<D>(p_.n, p_.total, p_.m, p_.a, apply);
   std::fill(p_.a.flat().begin(), p_.a.flat().end(), 0.0);

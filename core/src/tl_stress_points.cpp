@@ -122,6 +122,7 @@ TlStressPoints<D>::TlStressPoints(const FormulationSetup<D>& setup) : Base(setup
   cells_ = CellStrips<D>(p_);
   p_.cells = {};
   p_.cell_share = {};
+  p_.cell_material = {};
   check_volumes();
   per_mass_ = Field(static_cast<std::size_t>(p_.n), 1);
   // Cells end at symmetry planes, and so does the mass that they move.

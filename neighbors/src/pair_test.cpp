@@ -71,6 +71,7 @@ unsigned PairTest<D>::run(const Slice<D>& slice, const Neighbourhood<D>& near, c
     for (const std::size_t i : doubtful_)
       if (i < count_) matches_[i] = exact(slice, slices_[i], least);
   }
+  if (radii_.coincident) return 0;
   return least > slice.reach * slice.reach * coincident2 ? 0 : coincident_lanes(slice, near);
 }
 

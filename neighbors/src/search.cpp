@@ -28,7 +28,7 @@ SearchMethod search_method(std::string_view name) {
 
 template <int D>
 PairList find_pairs(PointView<D> points, double radius, SearchOptions options) {
-  return search(points, Radii{radius, {}}, options);
+  return search(points, Radii{radius, {}, options.coincident}, options);
 }
 
 template <int D>
@@ -36,7 +36,7 @@ PairList find_pairs(PointView<D> points, std::span<const double> radii, SearchOp
   if (radii.size() != static_cast<std::size_t>(points.n))
     throw InputError(
         fmt::format("{} radii for {} particles: each particle needs one", radii.size(), points.n));
-  return search(points, points.n ? Radii{0, radii} : Radii{1, {}}, options);
+  return search(points, points.n ? Radii{0, radii, options.coincident} : Radii{1, {}}, options);
 }
 
 template PairList find_pairs(PointView<1>, double, SearchOptions);

@@ -21,6 +21,7 @@ struct Slice {
 struct Radii {
   double one = 0;
   std::span<const double> each;  // empty: `one` holds
+  bool coincident = false;       // whether points may be one
   bool graded() const { return !each.empty(); }
   double operator()(Index a) const { return graded() ? each[static_cast<std::size_t>(a)] : one; }
 };

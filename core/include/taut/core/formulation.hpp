@@ -79,7 +79,7 @@ class Formulation : public Dynamics {
   virtual std::size_t bytes() const = 0;
 
  protected:
-  /// Applied loads and constraints on top of the internal accelerations; the last act of
+  /// Applied loads, ties and constraints on top of the internal accelerations; the last act of
   /// update_accelerations.
   void finish_accelerations(double t);
 

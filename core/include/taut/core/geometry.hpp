@@ -5,6 +5,7 @@
 #include <array>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string_view>
 #include <taut/core/types.hpp>
 #include <vector>
@@ -55,6 +56,9 @@ struct Facet {
   Index owner = 0;  ///< the particle whose part of the body ends there
 };
 
+template <int D>
+struct Occupancy;
+
 /// Particles of a body in its reference configuration, in the order of their making (the user's ids).
 template <int D>
 struct Cloud {
@@ -76,6 +80,10 @@ struct Cloud {
   /// What X and the centres of facets are relative to [m]. Coordinates far from their origin (maps) have too
   /// few digits left for spacings and displacements, so that bodies there get one of their own.
   Vec<D> origin = Vec<D>::Zero();
+  /// The lattice that `make_cloud` filled, which tells what lies between particles and where materials meet.
+  /// Null for other clouds. Holds while particles are moved, but not where they are added, removed or
+  /// reordered: such a cloud counts as one without a lattice.
+  std::shared_ptr<const Occupancy<D>> body;
   std::size_t size() const { return X.size(); }
 };
 

@@ -2,6 +2,7 @@
 /// \file
 /// Fields made smooth: polynomials fitted to scattered samples.
 
+#include <functional>
 #include <span>
 #include <taut/core/types.hpp>
 #include <vector>
@@ -25,11 +26,13 @@ struct PatchPoints {
 template <int D>
 class PatchFit {
  public:
-  /// Samples within `radius` [m] of a target are its patch. They are the targets themselves (the same points
-  /// and groups), or none of them coincides with any. \throws InputError for a radius that is not positive,
+  /// Samples within `radius` [m] of a target are its patch, those of its group that it `sees` (empty: all).
+  /// They are the targets themselves (the same points and groups), or none of them coincides with any; with
+  /// `coincident` points of different groups may. \throws InputError for a radius that is not positive,
   /// numbers of points and groups that differ, a target without a sample of its group in its patch (its
   /// number and position), and as `find_pairs`.
-  PatchFit(const PatchPoints<D>& targets, const PatchPoints<D>& samples, double radius);
+  PatchFit(const PatchPoints<D>& targets, const PatchPoints<D>& samples, double radius,
+           const std::function<bool(Index target, Index sample)>& sees = {}, bool coincident = false);
 
   /// Values at the targets from those at the samples, one for each. \throws InputError for another number.
   std::vector<Mat<D>> operator()(std::span<const Mat<D>> samples) const;

@@ -89,7 +89,12 @@ class Simulation {
   /// through facets (`compatible`, `antisymmetric`) and the cloud has some, the facets there.
   Where<D> face(std::string_view name) const;
 
-  /// Another material for the particles of a region (bonded to the rest).
+  /// Another material for a region (bonded to the rest): on node-centred lattices for the cells whose centres
+  /// lie in it, elsewhere for its particles. A particle between cells of two materials has volume and mass of
+  /// both, and in total Lagrangian forms on pairs a stress of each, made of its neighbours in that material
+  /// alone; jitter is taken back there. Its stress, as asked for, is that of the material set last at the
+  /// particle itself. A region that holds particles but no cell makes all materials the particles', as without
+  /// cells; those of updated Lagrangian forms always are.
   void set_material(const Where<D>& where, std::shared_ptr<const Material<D>> material);
   void set_velocity(const std::function<Vec<D>(const Vec<D>& X)>& velocity);
   /// Initial displacement; constraints still hold.

@@ -16,8 +16,9 @@ namespace taut {
 /// faces. The swinging cube of `taut-convergence cube` shows both.
 ///
 /// Fits see neither other bodies (those that the formulation does not couple) nor other materials; a particle
-/// on the border of two has the stress of its own one. Slits in a body that are narrower than the support
-/// are not seen. Nothing is added to a time step: fits are made once, in the reference configuration.
+/// on the border of two has the stress of its own one. Nor do they look across slits and re-entrant corners,
+/// where the formulation's pairs do not. Nothing is added to a time step: fits are made once, in the reference
+/// configuration.
 template <int D>
 class StressRecovery {
  public:

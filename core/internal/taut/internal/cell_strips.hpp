@@ -27,7 +27,7 @@ class CellStrips {
     std::array<Index, rows> row{};
     Index count = 0;            ///< of cells
     Index cell = 0;             ///< number of its first cell: where its shares stand
-    std::uint8_t material = 0;  ///< the first one among those of the corners
+    std::uint8_t material = 0;  ///< the cells' own, or the first one among those of the corners
     bool regular = false;       ///< all cells are equal boxes along the axes
     Vec<D> spacing;             ///< edges of a regular one [m]
   };

@@ -3,9 +3,19 @@
 /// Makers of the formulations, each defined in its own file.
 
 #include <memory>
+#include <string_view>
 #include <taut/core/formulation.hpp>
 
 namespace taut {
+
+/// What a formulation makes of particles where materials meet.
+enum class MaterialsMeet {
+  in_particles,  ///< a particle is of one material
+  in_twins,      ///< a particle has a twin for each material, and pairs that do not leave it
+  in_cells       ///< materials are the cells'; a particle has mass of each
+};
+/// Of a formulation by its name, a valid one.
+MaterialsMeet materials_meet(std::string_view formulation);
 
 template <int D>
 std::unique_ptr<Formulation<D>> make_tl_displacement(const FormulationSetup<D>& setup);

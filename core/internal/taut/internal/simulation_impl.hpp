@@ -12,6 +12,7 @@
 #include <taut/integrators/integrator.hpp>
 #include <taut/integrators/step_control.hpp>
 #include <taut/internal/facet_rows.hpp>
+#include <taut/internal/interfaces.hpp>
 #include <vector>
 
 namespace taut {
@@ -27,6 +28,7 @@ struct SimulationImpl {
   Method method;
   std::vector<std::shared_ptr<const Material<D>>> materials;
   std::vector<std::uint8_t> material;  // of each user's particle
+  std::unique_ptr<Interfaces<D>> interfaces;  // where cells are known and there are several materials
   std::vector<typename MirrorMap<D>::Plane> planes;  // in the cloud's coordinates
   std::vector<std::function<void()>> conditions;  // boundary conditions, applied when places are known
   std::function<Vec<D>(const Vec<D>&)> initial_velocity, initial_displacement;
@@ -55,7 +57,9 @@ struct SimulationImpl {
   Selected select(const Where<D>& where, const char* what) const;
   std::vector<Index> select_particles(const Where<D>& where, const char* what) const;
   void must_be_open(const char* what) const;
-  std::vector<Index> places(std::vector<Index> ids) const;
+  std::vector<Index> places(std::vector<Index> ids) const;  // all twins
+  // The interfaces, if the method resolves them; else null.
+  const Interfaces<D>* met() const;
   void hold(const Selected& selected, int axis, typename Constraints<D>::Displacement displacement);
   void add_load(const Selected& selected, const Vec<D>& force, History history);
   bool add_traction(const Selected& selected, const Vec<D>& force, const History& history);

@@ -9,6 +9,7 @@
 #include <taut/internal/hyperelastic_form.hpp>
 #include <taut/internal/material_groups.hpp>
 #include <taut/internal/pair_passes.hpp>
+#include <taut/internal/pair_rule.hpp>
 #include <taut/neighbors/search.hpp>
 
 namespace taut {
@@ -49,7 +50,9 @@ class TotalLagrangian : public HyperelasticForm<D> {
   }
 
   std::int64_t pairs() const override { return pairs_.pairs(); }
-  std::size_t bytes() const override { return pairs_.bytes() + op_.bytes() + Q_.bytes(); }
+  std::size_t bytes() const override {
+    return pairs_.bytes() + op_.bytes() + Q_.bytes() + (p_.rule ? p_.rule->bytes() : 0);
+  }
 
  protected:
   /// H = F - I of particle i.

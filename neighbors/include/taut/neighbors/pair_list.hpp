@@ -3,6 +3,7 @@
 /// Sliced pair lists: the neighbours of eight consecutive particles, slot by slot.
 
 #include <cstdint>
+#include <functional>
 #include <taut/core/fields.hpp>
 #include <taut/core/types.hpp>
 
@@ -64,6 +65,7 @@ class PairList {
 
  private:
   friend class PairListBuilder;
+  friend void filter_pairs(PairList& list, const std::function<bool(Index, Index)>& keep);
   Index particles_ = 0;
   std::int64_t pairs_ = 0;
   AlignedArray<std::int64_t> slice_begin_;     // slices + 1
@@ -72,5 +74,10 @@ class PairList {
   AlignedArray<std::uint8_t> mask_;            // slots
   AlignedArray<Index> index_;                  // lanes a gathered slot
 };
+
+/// Leaves the pairs (a, b) for which `keep(a, b)` holds, which must equal keep(b, a) and is called from many
+/// threads. The order of those that stay does not change; slots that lose all their pairs go. A list of which
+/// all is kept stays as it was, to the last bit.
+void filter_pairs(PairList& list, const std::function<bool(Index a, Index b)>& keep);
 
 }  // namespace taut

@@ -33,6 +33,8 @@ SearchMethod search_method(std::string_view name);
 
 struct SearchOptions {
   SearchMethod method = SearchMethod::cell_list;
+  /// Points that coincide are pairs like others, for who will part them (`filter_pairs`), instead of an error.
+  bool coincident = false;
 };
 
 /// All pairs closer than `radius` [m]: those with (dx² + dy²) + dz² < radius², each operation rounded to
