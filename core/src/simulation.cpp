@@ -210,10 +210,17 @@ void Simulation<D>::observe(double interval, std::function<void(double)> f) {
 }
 
 namespace {
-// Boundary areas fit for operators that need them: estimated where there are none, closed where they are given.
+// Boundary areas fit for operators that need them: found where there are none, closed where they are given.
 template <int D>
 void enclose(Cloud<D>& cloud) {
-  if (cloud.B.empty()) return estimate_areas(cloud);
+  if (cloud.B.empty()) {
+    if (cloud.facets.empty()) enclose_cloud(cloud);
+    cloud.B.assign(cloud.size(), Vec<D>::Zero());
+    for (const Facet<D>& f : cloud.facets) cloud.B[static_cast<std::size_t>(f.owner)] += f.area;
+    cloud.facets.clear();
+    close_areas(cloud);
+    return;
+  }
   constexpr double tolerable = 0.2;
   const double change = close_areas(cloud);
   if (!(change < tolerable))
