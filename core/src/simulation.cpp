@@ -317,11 +317,15 @@ void Simulation<D>::observe(double interval, std::function<void(double)> f) {
 
 namespace {
 
-// Closed boundary areas, for operators that need them, or an error where they have to be bent too far for that.
+// Closed boundaries, for operators that need them: found where nothing is known of them, made of area vectors where these
+// are all there is. Areas that have to be bent too far are an error.
 template <int D>
 void enclose(Cloud<D>& cloud) {
-  if (!cloud.facets.empty()) return;
-  if (cloud.B.empty()) return estimate_areas(cloud);
+  if (cloud.facets.empty()) {
+    if (cloud.B.empty()) return enclose_cloud(cloud);
+    // A lattice's lie on the boundary with its particles.
+    if (!cloud.body) place_areas(cloud);
+  }
   constexpr double tolerable = 0.2;
   const double change = close_areas(cloud);
   if (!(change < tolerable))

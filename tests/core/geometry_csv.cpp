@@ -46,12 +46,12 @@ std::string failure(const std::string& text, double dx = 1) {
 
 }  // namespace
 
-TEST_CASE("positions alone: volumes from the spacing") {
+TEST_CASE("positions alone: the body ends at the outermost") {
   const Csv file("x,y\n0,0\n0.5,0\n0,0.5\n0.5,0.5\n");
   const Cloud<2> c = taut::read_cloud<2>(file.path, 0.5);
   REQUIRE(c.size() == 4);
   CHECK(c.X[2] == Vec<2>(0, 0.5));
-  CHECK(c.V[3] == 0.25);
+  CHECK(c.V[3] == doctest::Approx(0.0625).epsilon(1e-12));
   CHECK(c.B.empty());
   CHECK(c.dx == 0.5);
 }
@@ -76,14 +76,44 @@ TEST_CASE("one dimension: x, volume, bx") {
   CHECK(c.V[1] == 1);
 }
 
-TEST_CASE("without a spacing the median nearest distance is taken") {
-  std::string text = "x,y\n";
+TEST_CASE("without a spacing the median nearest distance is taken, or the volume's if that is larger") {
+  std::string text = "x,y,volume\n";
   for (int i = 0; i < 20; ++i)
-    for (int j = 0; j < 10; ++j) text += std::to_string(0.25 * i) + "," + std::to_string(0.25 * j) + "\n";
-  const Csv file(text + "100,100\n100.001,100\n");  // two that stray
+    for (int j = 0; j < 10; ++j)
+      text += std::to_string(0.25 * i) + "," + std::to_string(0.25 * j) + ",0.0625\n";
+  const Csv file(text + "100,100,0.0625\n100.001,100,0.0625\n");  // two that stray
   const Cloud<2> c = taut::read_cloud<2>(file.path);
   CHECK(c.dx == doctest::Approx(0.25));
-  CHECK(c.V[0] == doctest::Approx(0.0625));
+  CHECK(c.V[0] == 0.0625);
+  const Csv long_cells("x,y,volume\n0,0,9\n1,0,9\n2,0,9\n0,9,9\n1,9,9\n2,9,9\n");
+  CHECK(taut::read_cloud<2>(long_cells.path).dx == 3);
+}
+
+TEST_CASE("nodes of a square without a volume column have its mass") {
+  std::string text = "x,y\n";
+  for (int i = 0; i < 5; ++i)
+    for (int j = 0; j < 5; ++j) text += std::to_string(0.25 * i) + "," + std::to_string(0.25 * j) + "\n";
+  const Csv file(text);
+  const Cloud<2> c = taut::read_cloud<2>(file.path);
+  double volume = 0;
+  for (const double V : c.V) volume += V;
+  CHECK(std::abs(volume - 1) < 1e-12);
+  CHECK(c.dx == doctest::Approx(0.25).epsilon(1e-12));
+}
+
+TEST_CASE("facets: several of a particle, none of others") {
+  const Csv file(
+      "x,y,volume,bx,by,fx,fy\n0.5,0.5,1,-1,0,0,0.5\n1.5,0.5,1,0,-1,1.5,0\n0.5,0.5,,0,-1,0.5,0\n"
+      "1.5,1.5,1,0,0,0,0\n");
+  const Cloud<2> c = taut::read_cloud<2>(file.path, 1);
+  REQUIRE(c.size() == 3);
+  REQUIRE(c.V.size() == 3);
+  CHECK(c.B.empty());
+  REQUIRE(c.facets.size() == 3);
+  CHECK(c.facets[2].owner == 0);
+  CHECK(c.facets[2].area == Vec<2>(0, -1));
+  CHECK(c.facets[2].centre == Vec<2>(0.5, 0));
+  CHECK(c.facets[1].owner == 1);
 }
 
 TEST_CASE("errors name the file, the line and what would be right") {
@@ -98,10 +128,12 @@ TEST_CASE("errors name the file, the line and what would be right") {
   CHECK(failure<2>("x,y\n1\n") == ":2: 1 fields where the header names 2");
   CHECK(failure<2>("x,y\n1,2,\n") == ":2: 3 fields where the header names 2");
   CHECK(failure<3>("# positions\nx,y\n1,2\n") ==
-        ":2: missing column z; valid in 3D: x, y, z, volume, bx, by, bz");
-  CHECK(failure<3>("volume\n1\n") == ":1: missing column x, y, z; valid in 3D: x, y, z, volume, bx, by, bz");
-  CHECK(failure<2>("x,y,z\n1,2,3\n") == ":1: unknown column \"z\"; valid in 2D: x, y, volume, bx, by");
-  CHECK(failure<2>("x,y,bx\n1,2,3\n") == ":1: missing column by; valid in 2D: x, y, volume, bx, by");
+        ":2: missing column z; valid in 3D: x, y, z, volume, bx, by, bz, fx, fy, fz");
+  CHECK(failure<3>("volume\n1\n") ==
+        ":1: missing column x, y, z; valid in 3D: x, y, z, volume, bx, by, bz, fx, fy, fz");
+  CHECK(failure<2>("x,y,z\n1,2,3\n") ==
+        ":1: unknown column \"z\"; valid in 2D: x, y, volume, bx, by, fx, fy");
+  CHECK(failure<2>("x,y,bx\n1,2,3\n") == ":1: missing column by; valid in 2D: x, y, volume, bx, by, fx, fy");
   CHECK(failure<2>("x,y,x\n1,2,3\n") == ":1: column x twice");
   CHECK(failure<1>("x,volume\n1,1\n2,0\n") == ":3: column volume: 0 is not positive");
   CHECK(failure<1>("x,volume\n1,-1\n") == ":2: column volume: -1 is not positive");
@@ -111,6 +143,23 @@ TEST_CASE("errors name the file, the line and what would be right") {
   CHECK(failure<1>("x\n1\n", 0) == ":2: the spacing dx must be given for a single particle");
   CHECK(failure<1>("x\n1\n1\n1\n2\n", 0) ==
         ":5: no spacing dx to be found: most particles coincide with another");
+  CHECK(failure<2>("x,y,volume,fx,fy\n") ==
+        ":1: missing column bx, by; valid in 2D: x, y, volume, bx, by, fx, fy");
+  CHECK(failure<2>("x,y,bx,by,fx,fy\n") == ":1: missing column volume, which goes with fx, fy");
+  CHECK(failure<1>("x,volume,bx,fx\n1,1,1,1\n1,1,1,1\n") ==
+        ":3: the position of particle 0 again: another facet of it has an empty volume, another particle a "
+        "place "
+        "of its own");
+  CHECK(failure<1>("x,volume,bx,fx\n1,,1,1\n") == ":2: column volume: \"\" is no finite number");
+  CHECK(failure<1>("x,volume,bx,fx\n1,1,0,1\n") == ":2: columns of facets, but all areas are zero");
+  CHECK(failure<1>("x,volume\n1,1e308\n2,1e308\n") ==
+        ": coordinates or volumes too large to be computed with");
+  CHECK(failure<1>("x,volume\n1,1\n1e200,1\n") == ": coordinates or volumes too large to be computed with");
+  CHECK(failure<2>("x,y\n0,0\n1,0\n2,0\n")
+            .starts_with(": there is no column volume, and from the points alone: particle 0 at (0, 0) lies "
+                         "on no part of the body"));
+  CHECK(failure<1>("x\n" + std::string(1000001, '1')) ==
+        ":2: a line of more than 1000000 bytes: this is no table of particles");
   CHECK(failure<1>("x\n1\n", -1) == ": spacing -1 is negative or not finite");
 }
 
@@ -119,4 +168,7 @@ TEST_CASE("files that are not there") {
   CHECK_THROWS_WITH_AS(taut::read_cloud<2>(nowhere), (nowhere.string() + ": cannot be opened").c_str(),
                        InputError);
   CHECK_THROWS_AS(taut::read_cloud<2>(std::filesystem::temp_directory_path()), InputError);
+  if (std::filesystem::exists("/dev/zero"))
+    CHECK_THROWS_WITH_AS(taut::read_cloud<2>("/dev/zero"), doctest::Contains("a line of more than"),
+                         InputError);
 }

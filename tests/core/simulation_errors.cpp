@@ -224,8 +224,8 @@ TEST_CASE("simulation errors: particles whose neighbours do not span the space a
   const auto file = std::filesystem::temp_directory_path() / "taut_line_of_particles.csv";
   {
     std::ofstream out(file);
-    out << "x,y\n";
-    for (int i = 0; i < 9; ++i) out << 0.1 * i << ",0.25\n";
+    out << "x,y,volume\n";
+    for (int i = 0; i < 9; ++i) out << 0.1 * i << ",0.25,0.01\n";
   }
   const auto cloud = read_cloud<2>(file);
   std::filesystem::remove(file);

@@ -110,8 +110,8 @@ struct LatticeOptions {
 };
 
 /// Fills a shape with a square lattice aligned with its bounding box, in lexicographic order, x fastest.
-/// Cell-centred lattices have facets where filled cells end. Node-centred volumes and area vectors are those of the union of inside cells, so that sum B = 0 and
-/// sum X (x) B = (sum V) I hold to round-off. Jitter moves a point only when all cells around it are inside
+/// Cell-centred lattices have facets where filled cells end. Node-centred volumes and area vectors are those of
+/// the union of inside cells, so that sum B = 0 and sum X (x) B = (sum V) I hold to round-off. Jitter moves a point only when all cells around it are inside
 /// (all cells around its own, for cell-centred ones), so that neither the faces nor the sums change; the
 /// displacements depend on the seed and the place in the lattice alone, and are the same on every machine.
 /// `Cloud::dx` is the wanted spacing where it divides the box, else the D-th root of a cell's volume.
@@ -136,12 +136,21 @@ std::function<bool(const Vec<D>&)> on_face(const Cloud<D>& cloud, std::string_vi
 template <int D>
 std::function<bool(const Vec<D>&)> on_facets(const Cloud<D>& cloud, std::string_view face);
 
-/// Reads particles from a CSV file with a header line. Columns x[,y[,z]] and, optionally, volume and
-/// bx[,by[,bz]] (area vectors), in any order; `#` starts a comment. Without volumes each particle gets dx^D;
-/// `dx` defaults to the median nearest-neighbour distance when 0. Clouds far from the origin get one of their
-/// own, as those of `make_cloud`. \throws InputError as file:line: what, for
-/// a missing file or column, a field that is no finite number, a wrong number of fields, a volume that is not
-/// positive; also for a dx that is negative or cannot be found.
+/// Reads particles from a CSV file with a header line; `#` starts a comment. Columns, in any order:
+/// - x[,y[,z]]: the position.
+/// - volume: without it volumes are found as `find_volumes` does, and the body ends at its outermost points.
+/// - bx[,by[,bz]]: the particle's area vector, `Cloud::B`.
+/// - fx[,fy[,fz]], beside volume and bx: where that area has its centre, `Cloud::facets`; rows with zero area
+///   have none. A particle with several facets has a row for each: the same position to the last digit, and an
+///   empty volume after the first.
+///
+/// `dx` defaults, when 0, to the larger one of the median distance to the nearest particle and of V^(1/D) in
+/// the middle of the volume (half of the body's volume lies in particles that are larger): the spacing of
+/// lattices, node or cell-centred, and of jittered ones that know their volumes. \throws InputError as
+/// file:line: what, for a missing file or column, a field that is no finite number, a wrong number of fields, a
+/// line of more than a million bytes, a volume that is not positive; also for volumes, coordinates or a dx that
+/// overflow, a dx that is negative or cannot be found, and as `find_volumes`. Clouds far from the
+/// origin get one of their own, as those of `make_cloud`.
 template <int D>
 Cloud<D> read_cloud(const std::filesystem::path& file, double dx = 0);
 
@@ -151,17 +160,35 @@ Cloud<D> read_cloud(const std::filesystem::path& file, double dx = 0);
 template <int D>
 void grade_spacing(Cloud<D>& cloud);
 
-/// Changes the area vectors of surface particles by the least amount (relative to their size) that makes them
-/// enclose the cloud's volume: sum B = 0, sum X (x) B = (sum V) I. Returns the change, sum |dB| / sum |B|.
-/// \throws InputError when the surface particles do not span the space.
+/// Gives particles the volumes of the body between them, which ends at the outermost: Delaunay's simplices
+/// (those that are not wide: gaps and holes of less than about three spacings are filled, and re-entrant corners
+/// cut off by half a spacing), each shared among its corners. Regular lattices get dx^D inside, and halves,
+/// quarters, eighths on faces, edges, corners; volumes sum to the body's to round-off. \throws InputError when
+/// a particle lies on no part of the body or shares its place with another, and in 2D and 3D when taut was built
+/// without Qhull.
+template <int D>
+void find_volumes(Cloud<D>& cloud);
+
+/// Finds the boundary of a body of which the particles and their volumes are known, and puts it into
+/// `Cloud::facets`. Between the particles the body is that of `find_volumes`; where the volumes of a connected
+/// part sum to more, its surface is moved outwards, to half a cell before the outermost particles if these are
+/// cells' middles, so that it encloses what they sum to; where such particles are jittered the surface is
+/// smoothed, and edges are kept. sum A = 0 and sum x (x) A = (sum V) I to round-off. \throws InputError as
+/// `find_volumes`, and when the volumes do not belong to a body like that.
+template <int D>
+void enclose_cloud(Cloud<D>& cloud);
+
+/// Makes facets of area vectors that are known without the places where they act: at the particle, or as far out
+/// of it as the body's volume asks for, half a cell where particles are cells' middles. Areas of particles on
+/// edges and in corners are split as the neighbours' directions suggest. What is enclosed has the trace of
+/// (sum V) I; `close_areas` does the rest. \throws InputError when all areas are zero.
+template <int D>
+void place_areas(Cloud<D>& cloud);
+
+/// Changes areas by the least amount (relative to their size) that makes them enclose the cloud's volume:
+/// sum A = 0, sum x (x) A = (sum V) I, over the facets, or over the area vectors of the particles where there
+/// are no facets. Returns the change, sum |dA| / sum |A|. \throws InputError when they do not span the space.
 template <int D>
 double close_areas(Cloud<D>& cloud);
-
-/// Finds the surface particles of a cloud without area vectors and gives them some: those whose neighbours
-/// within 2.1 dx leave a cone free, with the direction in which there is nothing as normal and one over the
-/// density of surface particles as area; closed as above. Meant for bodies sampled up to their surface, two
-/// spacings thick or more. \throws InputError when no particle is found on a surface, and as `close_areas`.
-template <int D>
-void estimate_areas(Cloud<D>& cloud);
 
 }  // namespace taut
