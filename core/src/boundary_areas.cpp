@@ -98,7 +98,7 @@ double close_areas(Cloud<D>& cloud) {
   };
   for (int d = 0; d < D; ++d) defect(d + 1, d) = volume / cloud.dx;
   for (std::size_t a = 0; a < cloud.size(); ++a) {
-    if (cloud.B[a].isZero()) continue;
+    if (cloud.B[a].isZero(0)) continue;
     const Basis f = basis(a);
     normal += cloud.B[a].norm() * f * f.transpose();
     defect -= f * cloud.B[a].transpose();
@@ -109,7 +109,7 @@ double close_areas(Cloud<D>& cloud) {
     throw InputError("the boundary areas do not enclose the body: its surface particles lie on one plane");
   const Eigen::Matrix<double, D + 1, D> multiplier = lu.solve(defect);
   for (std::size_t a = 0; a < cloud.size(); ++a) {
-    if (cloud.B[a].isZero()) continue;
+    if (cloud.B[a].isZero(0)) continue;
     const Vec<D> delta = cloud.B[a].norm() * (multiplier.transpose() * basis(a));
     change += delta.norm();
     cloud.B[a] += delta;
@@ -121,14 +121,14 @@ template <int D>
 void estimate_areas(Cloud<D>& cloud) {
   const Surroundings<D> around(cloud);
   const std::vector<Vec<D>> normal = surface_normals(cloud, around);
-  if (std::all_of(normal.begin(), normal.end(), [](const Vec<D>& n) { return n.isZero(); }))
+  if (std::all_of(normal.begin(), normal.end(), [](const Vec<D>& n) { return n.isZero(0); }))
     throw InputError("estimate_areas: no particle lies on a surface; is the spacing dx right?");
   cloud.B.assign(cloud.size(), Vec<D>::Zero());
   // Normals of the same face, averaged: what jitter inside does to one alone is no property of the surface.
   constexpr double same_face = 0.9;
 #pragma omp parallel for schedule(static)
   for (std::size_t a = 0; a < cloud.size(); ++a) {
-    if (normal[a].isZero()) continue;
+    if (normal[a].isZero(0)) continue;
     Vec<D> mean = normal[a];
     around.each(a, [&](std::size_t b, const Vec<D>&) {
       if (normal[b].dot(normal[a]) > same_face) mean += normal[b];

@@ -11,6 +11,7 @@
 #include <string>
 #include <taut/core/error.hpp>
 #include <taut/core/geometry.hpp>
+#include <taut/internal/powers.hpp>
 
 namespace taut {
 namespace {
@@ -194,7 +195,7 @@ Cloud<D> read_cloud(const std::filesystem::path& file, double dx) {
     if (!(dx > 0)) lines.fail("no spacing dx to be found: most particles coincide with another");
   }
   cloud.dx = dx;
-  if (cloud.V.empty()) cloud.V.assign(cloud.size(), std::pow(dx, D));
+  if (cloud.V.empty()) cloud.V.assign(cloud.size(), int_power(dx, D));
   return cloud;
 }
 
