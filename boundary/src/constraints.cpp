@@ -24,9 +24,8 @@ void Constraints<D>::apply_to_positions(double t, const Field& X, Field& x) cons
 }
 
 template <int D>
-void Constraints<D>::apply_to_velocities(double t, const Field& X, Field& v) const {
-  // Wide enough for round-off, narrow against any history: displacement histories have no scale of their own.
-  const double dt = 1e-6 * (t > 0 ? t : 1e-6);
+void Constraints<D>::apply_to_velocities(double t, const Field& X, Field& v, double window) const {
+  const double after = t + window, before = t - window;
   for (const Set& set : sets_) {
     double* vs = v.component(set.axis);
     for (const Index i : set.particles) {
@@ -35,7 +34,7 @@ void Constraints<D>::apply_to_velocities(double t, const Field& X, Field& v) con
         continue;
       }
       const Vec<D> Xi = X.vec<D>(i);
-      vs[i] = (set.displacement(Xi, t + dt) - set.displacement(Xi, t - dt)) / (2 * dt);
+      vs[i] = (set.displacement(Xi, after) - set.displacement(Xi, before)) / (after - before);
     }
   }
 }
@@ -46,6 +45,28 @@ void Constraints<D>::apply_to_accelerations(Field& a) const {
     double* as = a.component(set.axis);
     for (const Index i : set.particles) as[i] = 0;
   }
+}
+
+template <int D>
+std::vector<std::uint8_t> Constraints<D>::held(Index n) const {
+  std::vector<std::uint8_t> bits(static_cast<std::size_t>(n), 0);
+  for (const Set& set : sets_)
+    for (const Index i : set.particles) bits[static_cast<std::size_t>(i)] |= static_cast<std::uint8_t>(1 << set.axis);
+  return bits;
+}
+
+template <int D>
+bool Constraints<D>::move_later(double t, std::span<const double> times, const Field& X) const {
+  for (const Set& set : sets_) {
+    if (!set.displacement) continue;
+    for (const Index i : set.particles) {
+      const Vec<D> Xi = X.vec<D>(i);
+      const double now = set.displacement(Xi, t);
+      for (const double later : times)
+        if (set.displacement(Xi, later) != now) return true;
+    }
+  }
+  return false;
 }
 
 template class Constraints<1>;

@@ -95,7 +95,7 @@ Particles<D> assemble(const Cloud<D>& cloud, std::vector<std::shared_ptr<const M
   p.v = p.a = p.m_flat = Field(total, D);
   p.V = p.m = Field(total, 1);
   // Padding stands far from everything: no loop over whole packs mistakes it for a neighbour.
-  std::fill(p.X.flat().begin(), p.X.flat().end(), 1e30);
+  std::fill(p.X.flat().begin(), p.X.flat().end(), 1e30 * cloud.dx);
   std::fill(p.m.flat().begin(), p.m.flat().end(), 1.0);
   const std::vector<double> times = multiplicity<D>(cloud, planes);
   p.material.resize(n);
@@ -108,7 +108,11 @@ Particles<D> assemble(const Cloud<D>& cloud, std::vector<std::shared_ptr<const M
     p.X.template set_vec<D>(i, ordered[i]);
     p.V.component(0)[i] = V;
     p.material[i] = material[id];
-    p.m.component(0)[i] = V * p.materials[material[id]]->density();
+    const double m = V * p.materials[material[id]]->density();
+    if (!std::isnormal(m))
+      throw InputError(fmt::format("particle {} has mass {:g}: its volume {:g} times the density {:g} of \"{}\" is out of range",
+                                   id, m, V, p.materials[material[id]]->density(), p.materials[material[id]]->name()));
+    p.m.component(0)[i] = m;
     for (int d = 0; d < D; ++d) p.m_flat.component(d)[i] = p.m.component(0)[i];
     for (const auto& plane : planes)
       if (lies_on(plane, cloud.X[id], cloud.dx)) p.planes[i] |= static_cast<std::uint8_t>(1 << plane.axis);

@@ -9,6 +9,8 @@
 #include <taut/core/operators.hpp>
 #include <taut/integrators/integrator.hpp>
 #include <taut/internal/assembly.hpp>
+#include <taut/internal/powers.hpp>
+#include <taut/internal/rigid_modes.hpp>
 #include <taut/internal/simulation_impl.hpp>
 #include <taut/neighbors/search.hpp>
 
@@ -164,7 +166,7 @@ void SimulationImpl<D>::add_load(const std::vector<Index>& ids, const Vec<D>& fo
   if (!cloud.B.empty()) {
     Vec<D> normal = Vec<D>::Zero();
     for (const Index i : ids) normal += cloud.B[static_cast<std::size_t>(i)];
-    if (normal.norm() > 1e-12 * std::pow(cloud.dx, D - 1)) {
+    if (normal.norm() > 1e-12 * int_power(cloud.dx, D - 1)) {
       normal.normalize();
       for (std::size_t k = 0; k < ids.size(); ++k)
         weight[k] = std::max(0.0, normal.dot(cloud.B[static_cast<std::size_t>(ids[k])]));
@@ -224,6 +226,17 @@ void enclose(Cloud<D>& cloud) {
 }
 }  // namespace
 
+namespace {
+template <int D>
+void check_wave_speed(const Material<D>& material) {
+  const double speed = material.wave_speed();
+  if (!(speed > 0) || !std::isfinite(speed))
+    throw InputError(fmt::format("material \"{}\" has the wave speed {:g} m/s, which must be positive and finite: "
+                                 "check its modulus and its density of {:g}",
+                                 material.name(), speed, material.density()));
+}
+}  // namespace
+
 template <int D>
 void Simulation<D>::prepare() {
   if (impl_->formulation) return;
@@ -231,6 +244,7 @@ void Simulation<D>::prepare() {
   SimulationImpl<D>& s = *impl_;
   if (needs_areas(s.method.operators) && s.planes.empty()) enclose(s.cloud);
   const double reach = s.method.support_dx * s.cloud.dx * (1 + s.method.skin);
+  for (const auto& material : s.materials) check_wave_speed(*material);
   s.particles = assemble<D>(s.cloud, s.materials, s.material, s.planes, reach);
   s.cloud.cells = {};  // the particles have them now
   s.cloud.cell_share = {};
@@ -247,7 +261,15 @@ void Simulation<D>::prepare() {
       s.particles.x.template set_vec<D>(i, X + s.initial_displacement(X));
     }
   if (!s.particles.mirror.empty()) s.particles.mirror.positions(s.particles.x);
-  s.formulation = make_formulation<D>({s.particles, s.constraints, s.loads, s.method});
+  auto formulation = make_formulation<D>({s.particles, s.constraints, s.loads, s.method});
+  const double step = formulation->stable_step();
+  if (!(step > 0) || !std::isfinite(step))
+    throw InputError(
+        fmt::format("the stable step of the body at rest is {:g} s: the highest frequency of its particles has no "
+                    "number. Check the material, spacing and volumes (and their units), zero_energy_control, and "
+                    "whether particles have neighbours at all",
+                    step));
+  s.formulation = std::move(formulation);
   if (s.initial_velocity)
     for (Index i = 0; i < s.particles.n; ++i)
       s.particles.v.template set_vec<D>(i, s.initial_velocity(s.particles.X.template vec<D>(i)));
@@ -255,27 +277,56 @@ void Simulation<D>::prepare() {
 }
 
 template <int D>
-RunResult Simulation<D>::run(double duration, const RunOptions& options) {
+void Simulation<D>::check_run(double duration, const RunOptions& options) {
   if (!(duration >= 0) || !std::isfinite(duration))
     throw InputError(fmt::format("run: the duration {:g} s must not be negative", duration));
-  if (!(options.cfl > 0)) throw InputError(fmt::format("run: cfl = {:g} must be positive", options.cfl));
-  const auto integrator = make_integrator(options.integrator);
+  if (!(options.cfl > 0) || !std::isfinite(options.cfl))
+    throw InputError(fmt::format("run: cfl = {:g} must be positive and finite", options.cfl));
+  make_integrator(options.integrator);
   prepare();
-  return integrate(*impl_, *integrator, duration, options);
+  if (impl_->formulation->failure()) return;
+  const double end = impl_->time + duration;
+  const double bound = options.cfl * impl_->formulation->stable_step();
+  const double step = options.max_step > 0 ? std::min(bound, options.max_step) : bound;
+  if (duration > 0 && !advances(end, step))
+    throw InputError(fmt::format("run: steps of {:g} s never reach {:g} s, which has a resolution of {:g} s. Shorten "
+                                 "the duration, or enlarge max_step or cfl",
+                                 step, end, end - std::nextafter(end, 0)));
+}
+
+template <int D>
+RunResult Simulation<D>::run(double duration, const RunOptions& options) {
+  check_run(duration, options);
+  return integrate(*impl_, *make_integrator(options.integrator), duration, options);
+}
+
+template <int D>
+void Simulation<D>::check_relax(const RelaxOptions& options) {
+  if (!(options.tolerance > 0))
+    throw InputError(fmt::format("relax: tolerance = {:g} must be positive", options.tolerance));
+  if (!(options.cfl > 0) || !std::isfinite(options.cfl))
+    throw InputError(fmt::format("relax: cfl = {:g} must be positive and finite", options.cfl));
+  prepare();
+  const SimulationImpl<D>& s = *impl_;
+  if (s.formulation->failure() || s.loads.empty()) return;
+  const std::vector<double> times = relaxation_times(s, options);
+  require_held<D>({s.particles, s.formulation->bodies(), s.constraints, s.loads, s.planes,
+                   s.method.support_dx * s.cloud.dx, times});
 }
 
 template <int D>
 RunResult Simulation<D>::relax(const RelaxOptions& options) {
-  if (!(options.tolerance > 0))
-    throw InputError(fmt::format("relax: tolerance = {:g} must be positive", options.tolerance));
-  if (!(options.cfl > 0)) throw InputError(fmt::format("relax: cfl = {:g} must be positive", options.cfl));
-  prepare();
+  check_relax(options);
   return find_equilibrium(*impl_, options);
 }
 
 template <int D>
 std::size_t Simulation<D>::size() const {
   return impl_->cloud.size();
+}
+template <int D>
+double Simulation<D>::dx() const {
+  return impl_->cloud.dx;
 }
 template <int D>
 double Simulation<D>::time() const {
@@ -383,7 +434,7 @@ std::int64_t Simulation<D>::pairs() const {
 }
 template <int D>
 std::size_t Simulation<D>::bytes() const {
-  return prepared(*impl_).bytes() + impl_->particles.bytes();
+  return prepared(*impl_).bytes() + prepared(*impl_).own_bytes() + impl_->particles.bytes();
 }
 
 template class Simulation<1>;

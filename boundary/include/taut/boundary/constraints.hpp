@@ -2,7 +2,9 @@
 /// \file
 /// Kinematic constraints on sets of particles.
 
+#include <cstdint>
 #include <functional>
+#include <span>
 #include <taut/core/fields.hpp>
 #include <taut/core/types.hpp>
 #include <vector>
@@ -21,11 +23,17 @@ class Constraints {
   void prescribe(std::vector<Index> particles, int axis, Displacement displacement);
 
   void apply_to_positions(double t, const Field& X, Field& x) const;
-  /// Velocities of prescribed components are the central difference of their displacement.
-  void apply_to_velocities(double t, const Field& X, Field& v) const;
+  /// Velocities of prescribed components are the central difference of their displacement over
+  /// t ± `window` [s], which should be a small part of a time step: histories have no scale of their own.
+  void apply_to_velocities(double t, const Field& X, Field& v, double window) const;
   /// Constrained components carry no acceleration of their own, so that norms of it are out-of-balance forces.
   void apply_to_accelerations(Field& a) const;
   bool empty() const { return sets_.empty(); }
+
+  /// Bit d is set where component d of a particle is held or prescribed, for the first n particles.
+  std::vector<std::uint8_t> held(Index n) const;
+  /// Whether a prescribed displacement is another one at any of the times than it is at t.
+  bool move_later(double t, std::span<const double> times, const Field& X) const;
 
  private:
   struct Set {

@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <array>
 #include <taut/core/operators.hpp>
+#include <taut/internal/disjoint_sets.hpp>
 #include <taut/internal/hyperelastic_form.hpp>
 #include <taut/internal/material_groups.hpp>
 #include <taut/internal/pair_passes.hpp>
@@ -52,6 +53,14 @@ class TotalLagrangian : public HyperelasticForm<D> {
     }
   }
 
+  std::vector<Index> bodies() const override {
+    DisjointSets sets(p_.n);
+    for (Index a = 0; a < p_.n; ++a)
+      pairs_.for_each(a, [&](Index b, std::int64_t, int) {
+        sets.join(a, b < p_.n ? b : p_.mirror.master(b - p_.mirror.begin()));
+      });
+    return sets.numbers();
+  }
   std::int64_t pairs() const override { return pairs_.pairs(); }
   std::size_t bytes() const override { return pairs_.bytes() + op_.bytes() + Q_.bytes(); }
 

@@ -11,6 +11,7 @@
 #include <taut/core/error.hpp>
 #include <taut/core/formulation.hpp>
 #include <taut/core/kernel.hpp>
+#include <taut/internal/disjoint_sets.hpp>
 #include <taut/internal/kernel_table.hpp>
 #include <taut/internal/material_groups.hpp>
 #include <taut/internal/simd.hpp>
@@ -62,6 +63,16 @@ class UpdatedLagrangian : public Formulation<D> {
       sigma(r, q) = sigma(q, r) = T_.component(c)[i] * factor;
     }
     return sigma;
+  }
+  std::vector<Index> bodies() const override {
+    DisjointSets sets(p_.n);
+    const double support = table_.support();
+    for (Index a = 0; a < p_.n; ++a)
+      list_.pairs().for_each(a, [&](Index b, std::int64_t, int) {
+        if ((p_.X.template vec<D>(a) - p_.X.template vec<D>(b)).norm() < support)
+          sets.join(a, b < p_.n ? b : p_.mirror.master(b - p_.mirror.begin()));
+      });
+    return sets.numbers();
   }
   std::int64_t pairs() const override { return list_.pairs().pairs(); }
   std::int64_t rebuilds() const override { return list_.builds() - 1; }
