@@ -15,6 +15,10 @@ Cloud<D> build_cloud(const Scene& scene, const RunSpec& run, const SweepPoint& p
 template <int D>
 Simulation<D> build_simulation(const Scene& scene, const RunSpec& run, const SweepPoint& point);
 
+/// Whether a point lies in the scene's shape (not a cloud from a file) or about `distance` [m] from it.
+template <int D>
+bool is_near_shape(const Scene& scene, const Vec<D>& X, double distance);
+
 /// Least edge of the bounding box of a body that is a shape (not a cloud from a file) [m].
 double shortest_edge(const Scene& scene);
 

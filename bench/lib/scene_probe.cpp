@@ -73,8 +73,10 @@ void read_component(const TableReader& reader, ProbeSpec& probe, const SceneCont
   } else if (probe.type != "kinetic_energy" && probe.type != "strain_energy") {
     probe.row = axis_number(reader.choice("axis", context.axes()));
   }
-  if (probe.type == "displacement" || probe.type == "velocity" || probe.type == "cauchy_stress")
+  if (probe.type == "displacement" || probe.type == "velocity" || probe.type == "cauchy_stress") {
     probe.at = reader.vector("at", context.dimension);
+    probe.at_place = reader.require("at").place;
+  }
 }
 
 }  // namespace
