@@ -114,7 +114,7 @@ void apply(Simulation<D>& simulation, const BoundarySpec& boundary, Bounds<D> bo
                            return h ? u * h(t) : u;
                          });
   } else if (boundary.type == "load") {
-    simulation.load(where, force_of(boundary, point) * vec<D>(boundary.direction).normalized(),
+    simulation.load(where, force_of(boundary, point) * vec<D>(boundary.direction).stableNormalized(),
                     history_of(boundary));
   } else if (boundary.type == "body_force") {
     simulation.body_force(vec<D>(boundary.acceleration), history_of(boundary));
@@ -236,7 +236,23 @@ Simulation<D> build_simulation(const Scene& scene, const RunSpec& run, const Swe
   return simulation;
 }
 
+template <int D>
+bool is_near_shape(const Scene& scene, const Vec<D>& X, double distance) {
+  const Shape<D> shape = make_shape<D>(scene.geometry);
+  // Rounding must not tell a point on the surface from one beyond it: half way out is tried as well.
+  for (const double r : {0.0, 0.5 * distance, distance}) {
+    Vec<D> offset;
+    for (int k = 0; k < (D == 1 ? 3 : D == 2 ? 9 : 27); ++k) {
+      for (int d = 0, digits = k; d < D; ++d, digits /= 3) offset[d] = digits % 3 - 1;
+      if (offset.norm() > 0) offset.normalize();
+      if (shape.contains(X + r * offset)) return true;
+    }
+  }
+  return false;
+}
+
 #define TAUT_INSTANTIATE(D)                                                          \
+  template bool is_near_shape<D>(const Scene&, const Vec<D>&, double);               \
   template Cloud<D> build_cloud<D>(const Scene&, const RunSpec&, const SweepPoint&); \
   template Simulation<D> build_simulation<D>(const Scene&, const RunSpec&, const SweepPoint&);
 TAUT_INSTANTIATE(1)

@@ -19,6 +19,10 @@ Simulation<D> build_simulation(const Scene& scene, const RunSpec& run, const Swe
 /// that cannot be read.
 bool has_centroids(const Scene& scene);
 
+/// Whether a point lies in the scene's shape (not a cloud from a file) or about `distance` [m] from it.
+template <int D>
+bool is_near_shape(const Scene& scene, const Vec<D>& X, double distance);
+
 /// Least edge of the bounding box of a body that is a shape (not a cloud from a file) [m].
 double shortest_edge(const Scene& scene);
 

@@ -8,6 +8,7 @@
 #include <lib/measure.hpp>
 #include <lib/reference.hpp>
 #include <lib/scene_keys.hpp>
+#include <limits>
 #include <taut/core/derived.hpp>
 #include <taut/internal/local_origin.hpp>
 
@@ -23,13 +24,17 @@ class Sampler {
     if (probe.at.empty()) return;
     for (int d = 0; d < D; ++d) at_[d] = probe.at[static_cast<std::size_t>(d)];
     // Particles equally near count equally, so that a point on a symmetry line sees a symmetric value.
-    double nearest = std::numeric_limits<double>::max();
+    double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < simulation.size(); ++i)
       nearest = std::min(nearest, (simulation.reference_position(i) - at_).norm());
-    const double slack = 1e-6 * std::pow(simulation.mass(0), 1.0 / D) + coordinate_rounding(at_.norm());
+    const double slack = 1e-6 * simulation.dx() + coordinate_rounding(at_.norm());
     for (std::size_t i = 0; i < simulation.size(); ++i)
       if ((simulation.reference_position(i) - at_).norm() <= nearest + slack) near_.push_back(i);
   }
+
+  const Vec<D>& at() const { return at_; }
+  /// One of the particles that are nearest to it.
+  std::size_t nearest() const { return near_.front(); }
 
   double operator()() const {
     const std::string& type = probe_->type;
@@ -90,24 +95,41 @@ std::string point_text(const std::array<double, 3>& x, int dimension) {
   return '(' + text + ')';
 }
 
-template <int D>
-RunResult solve(Simulation<D>& simulation, const SolveSpec& spec, const Progress& progress) {
-  if (spec.mode == "relax") {
-    RelaxOptions options;
-    options.tolerance = spec.tolerance;
-    options.ramp_time = spec.ramp_time;
-    options.free_time = spec.free_time;
-    options.max_steps = spec.max_steps;
-    options.cfl = spec.cfl;
-    options.progress = progress;
-    return simulation.relax(options);
-  }
+RelaxOptions relax_options(const SolveSpec& spec, const Progress& progress) {
+  RelaxOptions options;
+  options.tolerance = spec.tolerance;
+  options.ramp_time = spec.ramp_time;
+  options.free_time = spec.free_time;
+  options.max_steps = spec.max_steps;
+  options.cfl = spec.cfl;
+  options.progress = progress;
+  return options;
+}
+
+RunOptions run_options(const SolveSpec& spec, const Progress& progress) {
   RunOptions options;
   options.integrator = spec.integrator;
   options.cfl = spec.cfl;
   options.max_step = spec.max_step;
   options.progress = progress;
-  return simulation.run(spec.duration, options);
+  return options;
+}
+
+template <int D>
+RunResult solve(Simulation<D>& simulation, const SolveSpec& spec, const Progress& progress) {
+  if (spec.mode == "relax") return simulation.relax(relax_options(spec, progress));
+  return simulation.run(spec.duration, run_options(spec, progress));
+}
+
+/// Which condition of equilibrium is not met.
+std::string unmet(const RunResult& run, double tolerance) {
+  if (run.residual > tolerance)
+    return fmt::format("out-of-balance force {:.2g} of the load, wanted {:.2g}", run.residual, tolerance);
+  if (run.remaining_motion > RelaxOptions::still_moving)
+    return fmt::format(
+        "forces balance to {:.2g} of the load, but the body still moves: {:.2g} of its way is left, wanted {:.2g}",
+        run.residual, run.remaining_motion, RelaxOptions::still_moving);
+  return "forces balance and the body is at rest, but not for long enough";
 }
 
 void record(CaseResult& result, const RunResult& run, const RunSpec& spec, int dimension) {
@@ -120,14 +142,23 @@ void record(CaseResult& result, const RunResult& run, const RunSpec& spec, int d
     const Breakdown& b = *run.breakdown;
     result.broke_time = b.time;
     result.what = b.what;
-    result.where = fmt::format("particle {}, from {} to {} mm", b.particle, point_text(b.X, dimension),
-                               point_text(b.x, dimension));
+    if (b.particle >= 0)
+      result.where = fmt::format("particle {}, from {} to {} mm", b.particle, point_text(b.X, dimension),
+                                 point_text(b.x, dimension));
     return;
   }
   result.broke_time = run.time;
   result.what =
-      fmt::format("no equilibrium within {} steps: out-of-balance force {:.2g} of the load, wanted {:.2g}",
-                  run.steps, run.residual, spec.solve.tolerance);
+      fmt::format("no equilibrium within {} steps: {}", run.steps, unmet(run, spec.solve.tolerance));
+}
+
+void divide(Measured& m, const Measured& by) {
+  if (by.value && *by.value != 0) {
+    *m.value /= *by.value;
+    return;
+  }
+  m.value.reset();
+  m.why_none = fmt::format("'{}', which divides it, is {}", by.probe->name, by.value ? "zero" : "unknown");
 }
 
 template <int D>
@@ -143,7 +174,7 @@ CaseResult run(const Scene& scene, const RunSpec& spec, const SweepPoint& point,
   std::vector<Sampler<D>> samplers;
   for (const ProbeSpec& probe : scene.probes)
     if (wanted(probe, spec, point)) {
-      result.measured.push_back({&probe, {}, reference_value(scene, spec, point, probe), {}, {}});
+      result.measured.push_back({&probe, {}, reference_value(scene, spec, point, probe), {}, {}, {}});
       samplers.emplace_back(simulation, probe);
     }
   const bool dynamic = spec.solve.mode == "dynamic";
@@ -168,27 +199,78 @@ CaseResult run(const Scene& scene, const RunSpec& spec, const SweepPoint& point,
         for (const double t : m.exact.t) m.exact.value.push_back(curve(t));
         if (m.probe->measure == "curve_error") m.reference.reset();
       }
-    if (!result.broke)
-      m.value = m.probe->measure == "final" ? samplers[i]() : measure(*m.probe, m.history, m.exact);
+    if (result.broke) continue;
+    m.value = m.probe->measure == "final" ? samplers[i]() : measure(*m.probe, m.history, m.exact);
+    if (!m.value) m.why_none = "its window holds no sample, or nothing but zeros";
   }
   for (Measured& m : result.measured)
     if (m.value && !m.probe->over.empty())
       for (const Measured& other : result.measured)
-        if (other.probe->name == m.probe->over && other.value) *m.value /= *other.value;
+        if (other.probe->name == m.probe->over) divide(m, other);
+  for (Measured& m : result.measured)
+    if (m.value && !std::isfinite(*m.value)) {
+      m.value.reset();
+      m.why_none = "its value is no finite number";
+    }
 
   if (options.keep_snapshot) result.snapshot = snapshot(simulation);
   if (!options.field_file.empty()) write_vtkhdf(options.field_file.string(), simulation);
   return result;
 }
 
+/// Whether a probe lies in the body, or next to it. Of a shape's lattice the shape says so, of layers beyond it
+/// their particles, and of a cloud its particles alone: then as far away as pairs reach, and no less than
+/// the spacing, also where it is wider than elsewhere, so that no point of the surface is taken for one
+/// outside.
+template <int D>
+bool is_placed(const Scene& scene, const RunSpec& spec, const Simulation<D>& simulation,
+               const Sampler<D>& sampler) {
+  const double dx = simulation.dx();
+  const double distance = (simulation.reference_position(sampler.nearest()) - sampler.at()).norm();
+  if (scene.geometry.type != "csv")
+    return distance <= 0.5 * dx || (distance <= 2.5 * dx && is_near_shape<D>(scene, sampler.at(), 0.5 * dx));
+  return distance <= std::max(dx, 0.6 * spec.method.support_dx * dx);
+}
+
+/// Reads a probe before anything moves.
+template <int D>
+void check_probe(const Scene& scene, const RunSpec& spec, const Simulation<D>& simulation,
+                 const ProbeSpec& probe) {
+  const Sampler<D> sampler(simulation, probe);
+  if (!probe.at.empty() && !is_placed(scene, spec, simulation, sampler)) {
+    const Vec<D> nearest = simulation.reference_position(sampler.nearest());
+    const auto text = [](const Vec<D>& X) {
+      return fmt::format("({:g})", fmt::join(X.data(), X.data() + D, ", "));
+    };
+    fail(probe.at_place,
+         fmt::format("[probe] at: '{}' at {} m lies outside of the body, {:.3g} m from its nearest particle at {} m "
+                     "in the run '{}'; give a point of the body in its reference configuration",
+                     probe.name, text(sampler.at()), (nearest - sampler.at()).norm(), text(nearest), spec.label));
+  }
+  try {
+    sampler();
+  } catch (const InputError& error) {
+    fail(probe.place, fmt::format("[probe] '{}' in the run '{}': {}", probe.name, spec.label, error.what()));
+  }
+}
+
 template <int D>
 void check(const Scene& scene, const RunSpec& spec, const SweepPoint& point) {
   Simulation<D> simulation = build_simulation<D>(scene, spec, point);
   try {
-    simulation.prepare();
+    if (spec.solve.mode == "relax")
+      simulation.check_relax(relax_options(spec.solve, {}));
+    else
+      simulation.check_run(spec.solve.duration, run_options(spec.solve, {}));
   } catch (const InputError& error) {
     fail(spec.place, std::string("[run] '") + spec.label + "': " + error.what());
   }
+  const std::vector<SweepPoint> points = scene.points();
+  for (const ProbeSpec& probe : scene.probes)
+    if (std::any_of(points.begin(), points.end(), [&](const SweepPoint& p) {
+          return wanted(spec, p) && wanted(probe, spec, p);
+        }))
+      check_probe<D>(scene, spec, simulation, probe);
 }
 
 }  // namespace
@@ -255,6 +337,8 @@ std::vector<Row> CaseResult::rows(int threads) const {
       row.status = "broke";
       row.value = broke_time;
       row.unit = "s";
+    } else if (!found->value) {
+      row.status = "broke";
     } else {
       row.value = found->value;
       row.reference = found->reference;

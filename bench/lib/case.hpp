@@ -19,7 +19,8 @@ struct Curve {
 
 struct Measured {
   const ProbeSpec* probe = nullptr;
-  std::optional<double> value, reference;  ///< value: absent when the case broke
+  std::optional<double> value, reference;  ///< value: absent when the case broke, or for the reason below
+  std::string why_none;                    ///< why a case that did not break gives no value; else empty
   Curve history;                           ///< dynamic cases
   Curve exact;                             ///< where the reference is a curve
 };
@@ -58,8 +59,9 @@ struct CaseOptions {
   Progress progress;
 };
 
-/// Builds everything up to the operators and looks up every reference, so that a bad scene is found before
-/// any case runs. \throws InputError
+/// Builds everything up to the first step and reads every probe that the run takes at some sweep point once,
+/// so that a bad scene is found before any case runs: bodies that nothing holds, probes that lie more than
+/// half a spacing outside of the body or have nothing to read. \throws InputError
 void check_case(const Scene& scene, const RunSpec& run, const SweepPoint& point);
 /// \throws Error; a formulation that breaks is a result.
 CaseResult run_case(const Scene& scene, const RunSpec& run, const SweepPoint& point,

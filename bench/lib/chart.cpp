@@ -30,7 +30,7 @@ Extent padded_extent(Extent e, bool log, double below, double above) {
     const double ratio = std::max(e.max / e.min, 4.0);
     return {e.min / std::pow(ratio, below), e.max * std::pow(ratio, above)};
   }
-  const double span = e.max > e.min ? e.max - e.min : std::max(std::abs(e.max), 1e-12);
+  const double span = e.max > e.min ? e.max - e.min : e.max != 0 ? std::abs(e.max) : 1;
   return {e.min - below * span, e.max + above * span};
 }
 

@@ -32,7 +32,7 @@ std::string case_name(const Scene& scene, const RunSpec& run, const SweepPoint& 
 
 /// Everything that can be wrong with a scene comes to light here, before the first run and the first file.
 void check_scene(const Scene& scene) {
-  std::set<std::tuple<const RunSpec*, double, double>> checked;
+  std::set<std::tuple<const RunSpec*, double, double, bool>> checked;
   for (const RunSpec& run : scene.runs)
     for (const SweepPoint& point : scene.points()) {
       if (!wanted(run, point)) continue;
@@ -41,9 +41,11 @@ void check_scene(const Scene& scene) {
           reference_value(scene, run, point, probe);
           for (const PrintedSpec& printed : probe.printed) printed_value(probe, printed, point);
         }
-      // Loads change neither particles nor operators: one check for all of them.
+      // Loads change neither particles nor operators: one check for all of them, but for whether there are any.
+      const auto load = point.find("load");
+      const bool unloaded = load != point.end() && load->second == 0;
       const MaterialSpec material = material_of(scene, run, point);
-      if (checked.insert({&run, lattice_of(run, point).dx, material.parameters.nu}).second)
+      if (checked.insert({&run, lattice_of(run, point).dx, material.parameters.nu, unloaded}).second)
         check_case(scene, run, point);
     }
 }
@@ -54,6 +56,8 @@ std::string outcome(const CaseResult& result) {
                        result.where.empty() ? "" : "; ", result.where);
   std::string text;
   for (const Measured& m : result.measured) {
+    if (!m.why_none.empty())
+      text += fmt::format("{}{}: {}", text.empty() ? "" : ", ", m.probe->name, m.why_none);
     if (!m.value) continue;
     text +=
         fmt::format("{}{} = {:.5g} {}", text.empty() ? "" : ", ", m.probe->name, *m.value, m.probe->unit());

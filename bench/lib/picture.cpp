@@ -174,7 +174,7 @@ bool write_picture(const PictureSpec& picture, const std::vector<const CaseResul
   high = std::max(high, 0.0);
   low *= unit;
   high *= unit;
-  if (high - low < 1e-9 * std::max(std::abs(high), 1.0)) high = low + 1;
+  if (!(high > low)) high = low + 1;
 
   const int columns = cases.size() > 1 ? 2 : 1;
   const int rows = (static_cast<int>(cases.size()) + columns - 1) / columns;

@@ -53,7 +53,10 @@ std::optional<double> reference_value(const Scene& scene, const RunSpec& run, co
     }
     const auto& cell = table.at(*row, table.column(reference.column));
     if (!cell.value) return {};
-    return *cell.value * reference.scale;
+    const double value = *cell.value * reference.scale;
+    if (!std::isfinite(value))
+      throw InputError(fmt::format("{} times scale = {:g} is no finite number", *cell.value, reference.scale));
+    return value;
   } catch (const InputError& error) {
     const std::string what = error.what();
     if (what.starts_with(reference.place.str())) throw;

@@ -121,6 +121,7 @@ struct ProbeSpec {
   std::string name, type;
   int row = 0, column = 0;  ///< component: vector quantities use row only
   std::vector<double> at;
+  Place at_place;
   std::string measure = "final";
   std::array<double, 2> window{0, 1e300};
   std::string over;  ///< peak: name of the probe whose peak divides this one

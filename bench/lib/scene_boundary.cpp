@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cmath>
 #include <lib/scene_keys.hpp>
 #include <lib/scene_parts.hpp>
 
@@ -67,7 +69,7 @@ BoundarySpec read_boundary(const Node& node, const SceneContext& context) {
     boundary.force = reader.number("force", Range::any(), 0);
     boundary.direction = reader.vector("direction", context.dimension);
     double length = 0;
-    for (const double c : boundary.direction) length += c * c;
+    for (const double c : boundary.direction) length = std::max(length, std::abs(c));
     if (length == 0) reader.fail_at("direction", "must not be zero");
   }
   return boundary;

@@ -127,6 +127,12 @@ void check_probes(const Scene& scene) {
                fmt::format(
                    "[probe] measure: '{}' needs a history in time, but the run '{}' is relaxed to rest",
                    probe.measure, run.label));
+    for (const RunSpec& run : scene.runs)
+      if (run.solve.mode == "dynamic" && probe.window[0] > run.solve.duration)
+        for (const SweepPoint& point : scene.points())
+          if (wanted(run, point) && wanted(probe, run, point))
+            fail(probe.place, fmt::format("[probe] window: '{}' begins at {:g} s, after the end of the run '{}' at {:g} s",
+                                          probe.name, probe.window[0], run.label, run.solve.duration));
   }
 }
 

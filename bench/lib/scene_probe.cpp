@@ -76,7 +76,10 @@ void read_component(const TableReader& reader, ProbeSpec& probe, const SceneCont
   const std::vector<std::string> keys = keys_of("probe", probe.type);
   const auto takes = [&](const char* key) { return std::find(keys.begin(), keys.end(), key) != keys.end(); };
   if (takes("axis")) probe.row = axis_number(reader.choice("axis", context.axes()));
-  if (takes("at")) probe.at = reader.vector("at", context.dimension);
+  if (takes("at")) {
+    probe.at = reader.vector("at", context.dimension);
+    probe.at_place = reader.require("at").place;
+  }
 }
 
 }  // namespace

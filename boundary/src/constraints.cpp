@@ -30,18 +30,6 @@ void Constraints<D>::finish(const Field& mass) {
   }
 }
 
-namespace {
-
-// Wide enough for round-off, narrow against any history: displacement histories have no scale of their own.
-template <int D>
-double velocity_of(const std::function<double(const Vec<D>&, double)>& displacement, const Vec<D>& X, double t) {
-  if (!displacement) return 0;
-  const double dt = 1e-6 * (t > 0 ? t : 1e-6);
-  return (displacement(X, t + dt) - displacement(X, t - dt)) / (2 * dt);
-}
-
-}  // namespace
-
 template <int D>
 void Constraints<D>::apply_to_displacements(double t, const Field& X, Field& u) const {
   for (const Set& set : sets_) {
@@ -54,14 +42,18 @@ void Constraints<D>::apply_to_displacements(double t, const Field& X, Field& u) 
 }
 
 template <int D>
-void Constraints<D>::apply_to_velocities(double t, const Field& X, Field& v) const {
+void Constraints<D>::apply_to_velocities(double t, const Field& X, Field& v, double window) const {
+  const double after = t + window, before = t - window;
+  const auto velocity = [&](const Displacement& follow, const Vec<D>& at) {
+    return follow ? (follow(at, after) - follow(at, before)) / (after - before) : 0;
+  };
   for (const Set& set : sets_) {
     double* vs = v.component(set.axis);
-    for (const Index i : set.particles) vs[i] = velocity_of<D>(set.displacement, X.vec<D>(i), t);
+    for (const Index i : set.particles) vs[i] = velocity(set.displacement, X.vec<D>(i));
   }
   for (int d = 0; d < D; ++d)
     held_[static_cast<std::size_t>(d)].project(
-        v.component(d), [&](const Vec<D>& point, const Displacement& u) { return velocity_of<D>(u, point, t); });
+        v.component(d), [&](const Vec<D>& point, const Displacement& follow) { return velocity(follow, point); });
 }
 
 template <int D>
@@ -72,6 +64,34 @@ void Constraints<D>::apply_to_accelerations(Field& a) const {
   }
   for (int d = 0; d < D; ++d)
     held_[static_cast<std::size_t>(d)].project(a.component(d), [](const Vec<D>&, const Displacement&) { return 0.0; });
+}
+
+template <int D>
+std::vector<std::uint8_t> Constraints<D>::held(Index n) const {
+  std::vector<std::uint8_t> bits(static_cast<std::size_t>(n), 0);
+  for (const Set& set : sets_)
+    for (const Index i : set.particles) bits[static_cast<std::size_t>(i)] |= static_cast<std::uint8_t>(1 << set.axis);
+  return bits;
+}
+
+template <int D>
+bool Constraints<D>::move_later(double t, std::span<const double> times, const Field& X) const {
+  for (const Set& set : sets_) {
+    if (!set.displacement) continue;
+    for (const Index i : set.particles) {
+      const Vec<D> Xi = X.vec<D>(i);
+      const double now = set.displacement(Xi, t);
+      for (const double later : times)
+        if (set.displacement(Xi, later) != now) return true;
+    }
+  }
+  bool moves = false;
+  for (const HeldPoints<D>& held : held_)
+    held.for_each([&](const BoundPoint<D>& point, const Displacement& follow) {
+      if (follow)
+        for (const double later : times) moves = moves || follow(point.X, later) != follow(point.X, t);
+    });
+  return moves;
 }
 
 template class Constraints<1>;

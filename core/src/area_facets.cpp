@@ -74,7 +74,7 @@ void place_areas(Cloud<D>& cloud) {
   Vec<D> middle = Vec<D>::Zero();
   for (const Vec<D>& x : cloud.X) middle += x / static_cast<double>(cloud.size());
   for (std::size_t a = 0; a < cloud.size(); ++a)
-    if (!cloud.B[a].isZero()) {
+    if (!cloud.B[a].isZero(0)) {
       id.push_back(a);
       X.push_back(cloud.X[a]);
       normal.push_back(cloud.B[a].normalized());

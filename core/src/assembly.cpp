@@ -145,7 +145,7 @@ Particles<D> assemble(const Cloud<D>& cloud, std::vector<std::shared_ptr<const M
   p.V = p.m = Field(total, 1);
   // Padding stands far from everything: no loop over whole packs mistakes it for a neighbour.
   if (!cloud.spacing.empty()) p.spacing = Field(total, 1);
-  std::fill(p.X.flat().begin(), p.X.flat().end(), 1e30);
+  std::fill(p.X.flat().begin(), p.X.flat().end(), 1e30 * cloud.dx);
   std::fill(p.m.flat().begin(), p.m.flat().end(), 1.0);
   const std::vector<double> times = multiplicity<D>(cloud, planes);
   p.material.resize(n);
@@ -166,6 +166,9 @@ Particles<D> assemble(const Cloud<D>& cloud, std::vector<std::shared_ptr<const M
         mass += share.V * times[id] * p.materials[share.material]->density();
     else
       mass = V * p.materials[p.material[i]]->density();
+    if (!std::isnormal(mass))
+      throw InputError(fmt::format("particle {} has mass {:g}: its volume {:g} times the density {:g} of \"{}\" is out of range",
+                                   id, mass, V, p.materials[p.material[i]]->density(), p.materials[p.material[i]]->name()));
     p.m.component(0)[i] = mass;
     for (int d = 0; d < D; ++d) p.m_flat.component(d)[i] = p.m.component(0)[i];
     for (const auto& plane : planes)

@@ -14,7 +14,7 @@ double close_areas(Cloud<D>& cloud) {
     for (Facet<D>& facet : cloud.facets) f(facet.area, facet.centre);
     if (!cloud.facets.empty()) return;
     for (std::size_t a = 0; a < cloud.B.size(); ++a)
-      if (!cloud.B[a].isZero()) f(cloud.B[a], cloud.X[a]);
+      if (!cloud.B[a].isZero(0)) f(cloud.B[a], cloud.X[a]);
   };
   double volume = 0, total = 0, change = 0;
   for (const double V : cloud.V) volume += V;

@@ -3,6 +3,7 @@
 #include <taut/internal/compatible_operator.hpp>
 #include <taut/internal/pair_passes.hpp>
 #include <taut/internal/pair_vectors.hpp>
+#include <taut/internal/powers.hpp>
 
 namespace taut {
 
@@ -19,7 +20,7 @@ bool is_closed(const Particles<D>& p, const PairList& pairs, const PairOperator<
     for (int c = 0; c < D * D; ++c) store(stress.component(c) + s * lanes, V * of.matrix(c));
   }
   p.mirror.tensors(stress);
-  const double negligible = 1e-4 * std::pow(p.dx, D - 1);
+  const double negligible = 1e-4 * int_power(p.dx, D - 1);
   bool closed = true;
   with_payload<D>(op, pairs, p.X, [&](const auto& payload) {
     const Columns<D * D> Q(stress);

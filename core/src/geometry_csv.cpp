@@ -12,6 +12,7 @@
 #include <taut/core/geometry.hpp>
 #include <taut/internal/local_origin.hpp>
 #include <taut/internal/spacing.hpp>
+#include <taut/internal/powers.hpp>
 
 namespace taut {
 namespace {

@@ -9,6 +9,7 @@
 #include <taut/core/geometry.hpp>
 #include <taut/internal/local_origin.hpp>
 #include <taut/internal/occupancy.hpp>
+#include <taut/internal/powers.hpp>
 
 namespace taut {
 namespace {
@@ -356,7 +357,7 @@ Cloud<D> make_cloud(const Shape<D>& shape, const LatticeOptions& options) {
 
   const bool divides = ((grid.spacing.array() - options.dx).abs() <= 1e-9 * options.dx).all();
   Cloud<D> cloud;
-  cloud.dx = divides ? options.dx : std::pow(grid.cell_volume, 1.0 / D);
+  cloud.dx = divides ? options.dx : edge_of<D>(grid.cell_volume);
   cloud.origin = grid.origin;
   cloud.X.resize(n);
   cloud.V.resize(n);

@@ -11,6 +11,7 @@
 #include <taut/internal/compatible_operator.hpp>
 #include <taut/internal/describe.hpp>
 #include <taut/internal/pair_passes.hpp>
+#include <taut/internal/powers.hpp>
 #include <taut/internal/quadratic_operator.hpp>
 #include <taut/internal/shared_vectors.hpp>
 
@@ -114,7 +115,7 @@ bool invert_moment(const Moments<D>& m, int l, Coefficients<D>& out) {
   for (int c = 0; c < D * D; ++c) moment(c % D, c / D) = m.outer[c][l];
   // Relative to the size it would have with neighbours all around: 1e-7 of it is rank deficiency in single
   // precision.
-  if (!(std::abs(moment.determinant()) > 1e-7 * std::pow(m.scale[l] / D, D))) return false;
+  if (!(std::abs(moment.determinant()) > 1e-7 * int_power(m.scale[l] / D, D))) return false;
   const Mat<D> inverse = moment.inverse();
   for (int c = 0; c < D * D; ++c) out[c][l] = inverse(c / D, c % D);
   return true;
@@ -123,7 +124,7 @@ bool invert_moment(const Moments<D>& m, int l, Coefficients<D>& out) {
 template <int D>
 BlockKey key_of(const Coefficients<D>& c, double dx) {
   const auto quantised = [](double v) { return static_cast<std::uint64_t>(std::llround(v / alike)); };
-  const double matrix_unit = std::pow(dx, D), sum_unit = std::pow(dx, 1 - D);
+  const double matrix_unit = int_power(dx, D), sum_unit = int_power(dx, 1 - D);
   BlockKey key;
   for (int l = 0; l < lanes; ++l) {
     for (int k = 0; k < D * D; ++k) key.add(quantised(c[k][l] * matrix_unit));
@@ -225,7 +226,7 @@ PairOperator<D> make_operator(const Method& method, const Particles<D>& p, const
   if (name == "standard")
     op.weight = p.V;
   else
-    op.weight_product = std::pow(p.dx, 2 * D);
+    op.weight_product = int_power(p.dx, 2 * D);
   op.precision = resolve<D>(method, p, pairs, support, op.weight);
   if (!p.spacing.empty() && !is_stored(op.precision))
     throw InputError(fmt::format("the pair vectors of graded clouds cannot be {}: choose single or double",
@@ -250,7 +251,7 @@ PairOperator<D> make_operator(const Method& method, const Particles<D>& p, const
   if (needs_areas(name) && !(automatic && is_closed(p, pairs, op))) {
     if (automatic && !is_stored(op.precision)) {
       op = {};
-      op.weight_product = std::pow(p.dx, 2 * D);
+      op.weight_product = int_power(p.dx, 2 * D);
       fill_radial_vectors(p, pairs, kernel, h, op);
       make_matrices();
     }

@@ -6,6 +6,7 @@
 #include <taut/core/error.hpp>
 #include <taut/internal/block_dictionary.hpp>
 #include <taut/internal/pair_payload.hpp>
+#include <taut/internal/powers.hpp>
 #include <taut/internal/shared_vectors.hpp>
 #include <unordered_map>
 #include <unordered_set>
@@ -48,7 +49,7 @@ void for_keys(const Particles<D>& p, const PairList& pairs, double support, cons
               F&& f) {
   const Columns<D> X(p.X);
   const double* weight = weights.empty() ? nullptr : weights.component(0);
-  const double per_quantum = 1 / (alike * std::pow(p.dx, 2 * D));
+  const double per_quantum = 1 / (alike * int_power(p.dx, 2 * D));
   for (Index s = chunk * chunk_slices; s < std::min((chunk + 1) * chunk_slices, pairs.slices()); ++s)
     for_slots(pairs, s, [&](std::int64_t k, auto&& at) {
       Pack r[D];

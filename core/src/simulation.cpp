@@ -12,6 +12,8 @@
 #include <taut/internal/local_origin.hpp>
 #include <taut/internal/formulations.hpp>
 #include <taut/internal/pair_rule.hpp>
+#include <taut/internal/powers.hpp>
+#include <taut/internal/rigid_modes.hpp>
 #include <taut/internal/simulation_impl.hpp>
 #include <taut/neighbors/search.hpp>
 
@@ -355,6 +357,17 @@ void SimulationImpl<D>::place_facets() {
                       [&](Index i, const Vec<D>& part) { particles.B[static_cast<std::size_t>(i)] += part; });
 }
 
+namespace {
+template <int D>
+void check_wave_speed(const Material<D>& material) {
+  const double speed = material.wave_speed();
+  if (!(speed > 0) || !std::isfinite(speed))
+    throw InputError(fmt::format("material \"{}\" has the wave speed {:g} m/s, which must be positive and finite: "
+                                 "check its modulus and its density of {:g}",
+                                 material.name(), speed, material.density()));
+}
+}  // namespace
+
 template <int D>
 void Simulation<D>::prepare() {
   if (impl_->formulation) return;
@@ -369,6 +382,7 @@ void Simulation<D>::prepare() {
   const double widest =
       s.cloud.spacing.empty() ? s.cloud.dx : *std::max_element(s.cloud.spacing.begin(), s.cloud.spacing.end());
   const double reach = s.method.support_dx * widest * (1 + s.method.skin);
+  for (const auto& material : s.materials) check_wave_speed(*material);
   const bool twins = interfaces && meet == MaterialsMeet::in_twins;
   s.particles = assemble<D>(s.cloud, s.materials, s.material, s.planes, reach, interfaces, twins);
   // Areas that are guesses tell nothing. Forms that find their neighbours anew let bodies meet.
@@ -390,7 +404,15 @@ void Simulation<D>::prepare() {
     for (Index i = 0; i < s.particles.n; ++i)
       s.particles.u.template set_vec<D>(i, s.initial_displacement(s.particles.reference_position(i)));
   if (!s.particles.mirror.empty()) s.particles.mirror.vectors(s.particles.u);
-  s.formulation = make_formulation<D>({s.particles, s.constraints, s.loads, s.method});
+  auto formulation = make_formulation<D>({s.particles, s.constraints, s.loads, s.method});
+  const double step = formulation->stable_step();
+  if (!(step > 0) || !std::isfinite(step))
+    throw InputError(
+        fmt::format("the stable step of the body at rest is {:g} s: the highest frequency of its particles has no "
+                    "number. Check the material, spacing and volumes (and their units), zero_energy_control, and "
+                    "whether particles have neighbours at all",
+                    step));
+  s.formulation = std::move(formulation);
   if (s.initial_velocity)
     for (Index i = 0; i < s.particles.n; ++i)
       s.particles.v.template set_vec<D>(i, s.initial_velocity(s.particles.reference_position(i)));
@@ -398,27 +420,56 @@ void Simulation<D>::prepare() {
 }
 
 template <int D>
-RunResult Simulation<D>::run(double duration, const RunOptions& options) {
+void Simulation<D>::check_run(double duration, const RunOptions& options) {
   if (!(duration >= 0) || !std::isfinite(duration))
     throw InputError(fmt::format("run: the duration {:g} s must not be negative", duration));
-  if (!(options.cfl > 0)) throw InputError(fmt::format("run: cfl = {:g} must be positive", options.cfl));
-  const auto integrator = make_integrator(options.integrator);
+  if (!(options.cfl > 0) || !std::isfinite(options.cfl))
+    throw InputError(fmt::format("run: cfl = {:g} must be positive and finite", options.cfl));
+  make_integrator(options.integrator);
   prepare();
-  return integrate(*impl_, *integrator, duration, options);
+  if (impl_->formulation->failure()) return;
+  const double end = impl_->time + duration;
+  const double bound = options.cfl * impl_->formulation->stable_step();
+  const double step = options.max_step > 0 ? std::min(bound, options.max_step) : bound;
+  if (duration > 0 && !advances(end, step))
+    throw InputError(fmt::format("run: steps of {:g} s never reach {:g} s, which has a resolution of {:g} s. Shorten "
+                                 "the duration, or enlarge max_step or cfl",
+                                 step, end, end - std::nextafter(end, 0)));
+}
+
+template <int D>
+RunResult Simulation<D>::run(double duration, const RunOptions& options) {
+  check_run(duration, options);
+  return integrate(*impl_, *make_integrator(options.integrator), duration, options);
+}
+
+template <int D>
+void Simulation<D>::check_relax(const RelaxOptions& options) {
+  if (!(options.tolerance > 0))
+    throw InputError(fmt::format("relax: tolerance = {:g} must be positive", options.tolerance));
+  if (!(options.cfl > 0) || !std::isfinite(options.cfl))
+    throw InputError(fmt::format("relax: cfl = {:g} must be positive and finite", options.cfl));
+  prepare();
+  const SimulationImpl<D>& s = *impl_;
+  if (s.formulation->failure() || s.loads.empty()) return;
+  const std::vector<double> times = relaxation_times(s, options);
+  require_held<D>({s.particles, s.formulation->bodies(), s.constraints, s.loads, s.planes,
+                   s.method.support_dx * s.cloud.dx, times});
 }
 
 template <int D>
 RunResult Simulation<D>::relax(const RelaxOptions& options) {
-  if (!(options.tolerance > 0))
-    throw InputError(fmt::format("relax: tolerance = {:g} must be positive", options.tolerance));
-  if (!(options.cfl > 0)) throw InputError(fmt::format("relax: cfl = {:g} must be positive", options.cfl));
-  prepare();
+  check_relax(options);
   return find_equilibrium(*impl_, options);
 }
 
 template <int D>
 std::size_t Simulation<D>::size() const {
   return impl_->cloud.size();
+}
+template <int D>
+double Simulation<D>::dx() const {
+  return impl_->cloud.dx;
 }
 template <int D>
 double Simulation<D>::time() const {
@@ -555,7 +606,7 @@ std::int64_t Simulation<D>::pairs() const {
 }
 template <int D>
 std::size_t Simulation<D>::bytes() const {
-  return prepared(*impl_).bytes() + impl_->particles.bytes();
+  return prepared(*impl_).bytes() + prepared(*impl_).own_bytes() + impl_->particles.bytes();
 }
 
 template class Simulation<1>;

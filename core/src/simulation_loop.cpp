@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <taut/integrators/relax.hpp>
+#include <taut/internal/powers.hpp>
 #include <taut/internal/simulation_impl.hpp>
 
 namespace taut {
@@ -25,6 +27,11 @@ class Loop {
 
   RunResult result;
 
+  /// Ends the run: no particle is to blame.
+  void give_up(const char* what) {
+    result.status = Status::broke;
+    result.breakdown = Breakdown{what, -1, {}, {}, s_.time, result.steps};
+  }
   /// Whether the formulation still holds; else the result says how it broke.
   bool intact();
   /// Counts a step that ended at time t.
@@ -101,7 +108,42 @@ void notify(SimulationImpl<D>& s) {
     }
 }
 
+// No force is applied and no prescribed displacement changes, now or later.
+template <int D>
+bool is_left_alone(const SimulationImpl<D>& s, const std::vector<double>& times) {
+  for (const double t : times)
+    if (s.loads.norm(t, s.particles.m) != 0) return false;
+  return !s.constraints.move_later(s.time, times, s.particles.X);
+}
+
+// Out-of-balance force [N] that rounding of the state (displacements, or positions where stresses follow from rates) can make: rounded strains, times the modulus,
+// on the faces of a cell, for all particles.
+template <int D>
+double force_of_round_off(const SimulationImpl<D>& s) {
+  double modulus = 0, farthest = 0;
+  for (const auto& material : s.particles.materials)
+    modulus = std::max(modulus, material->density() * material->wave_speed() * material->wave_speed());
+  const bool rates = !s.formulation->evolved().empty();
+  for (int d = 0; d < D; ++d)
+    for (Index i = 0; i < s.particles.n; ++i)
+      farthest = std::max(farthest, std::abs(s.particles.u.component(d)[i] + (rates ? s.particles.X.component(d)[i] : 0)));
+  constexpr double roundings = 8;
+  return roundings * std::numeric_limits<double>::epsilon() * std::sqrt(static_cast<double>(s.particles.n)) *
+         modulus * farthest * int_power(s.particles.dx, D - 2);
+}
+
 }  // namespace
+
+bool advances(double end, double step) { return end - step < end; }
+
+template <int D>
+std::vector<double> relaxation_times(const SimulationImpl<D>& s, const RelaxOptions& options) {
+  const double step = options.cfl * s.formulation->stable_step();
+  std::vector<double> times{s.time, s.time + options.ramp_time, s.time + options.free_time};
+  for (double steps = 1; steps <= static_cast<double>(options.max_steps) && steps <= 1e9; steps *= 10)
+    times.push_back(s.time + steps * step);
+  return times;
+}
 
 const char* to_string(Status status) {
   switch (status) {
@@ -126,9 +168,15 @@ RunResult integrate(SimulationImpl<D>& s, Integrator& integrator, double duratio
     double bound = options.cfl * s.formulation->stable_step();
     if (options.max_step > 0) bound = std::min(bound, options.max_step);
     double dt = s.step_control.next(bound);
-    if (s.time + dt > end * (1 - 1e-14)) dt = end - s.time;
+    if (!advances(end, dt)) {
+      loop.give_up(std::isfinite(dt) ? "step too small to advance time" : "not a number");
+      break;
+    }
+    // No sliver of a step that rounding has left.
+    const bool last = s.time + dt >= end - 1e-6 * dt;
+    if (last) dt = end - s.time;
     integrator.step(*s.formulation, s.time, dt);
-    loop.stepped(s.time + dt >= end * (1 - 1e-14) ? end : s.time + dt);
+    loop.stepped(last ? end : s.time + dt);
     notify(s);
     if (options.progress && !options.progress(loop.result.steps, s.time, 1 - (end - s.time) / duration))
       break;
@@ -160,12 +208,18 @@ RunResult find_equilibrium(SimulationImpl<D>& s, const RelaxOptions& options) {
   undamped->complete(*s.formulation, s.time);
   Relaxation relaxation(*s.formulation);
   double largest = 0;
+  // Where nothing is applied and nothing will be, round-off must not be compared with round-off.
+  const bool left_alone = is_left_alone(s, relaxation_times(s, options));
+  const double round_off = left_alone ? force_of_round_off(s) : 0;
   // A passing coincidence of small forces is no equilibrium: they must stay small.
   constexpr int in_a_row = 20;
-  constexpr double still_moving = 1e-4;
   int converged = 0;
   while (!stopped && result.steps < options.max_steps && loop.intact()) {
     const double dt = options.cfl * s.formulation->stable_step();
+    if (!(dt > 0) || !std::isfinite(dt)) {
+      loop.give_up(dt == 0 ? "step too small to advance time" : "not a number");
+      break;
+    }
     relaxation.step(s.time, dt);
     loop.stepped(s.time + dt);
     largest = std::max(largest, relaxation.force_norm());
@@ -174,8 +228,12 @@ RunResult find_equilibrium(SimulationImpl<D>& s, const RelaxOptions& options) {
     result.residual = scale > 0 ? relaxation.force_norm() / scale : 0;
     const double progress = std::log(std::max(result.residual, 1e-300)) / std::log(options.tolerance);
     stopped = loop.stopped(options.progress, std::min(1.0, progress));
-    const bool small = s.time - start >= options.ramp_time && result.residual <= options.tolerance &&
-                       (relaxation.remaining_motion() <= still_moving || result.residual == 0);
+    result.remaining_motion = relaxation.remaining_motion();
+    const bool small =
+        s.time - start >= options.ramp_time &&
+        ((left_alone && relaxation.force_norm() <= round_off) ||
+         (result.residual <= options.tolerance &&
+          (result.remaining_motion <= RelaxOptions::still_moving || result.residual == 0)));
     converged = small ? converged + 1 : 0;
     if (converged == in_a_row) {
       result.status = Status::ok;
@@ -186,6 +244,7 @@ RunResult find_equilibrium(SimulationImpl<D>& s, const RelaxOptions& options) {
 }
 
 #define TAUT_INSTANTIATE(D)                                                                    \
+  template std::vector<double> relaxation_times<D>(const SimulationImpl<D>&, const RelaxOptions&); \
   template RunResult integrate<D>(SimulationImpl<D>&, Integrator&, double, const RunOptions&); \
   template RunResult find_equilibrium<D>(SimulationImpl<D>&, const RelaxOptions&);
 TAUT_INSTANTIATE(1)

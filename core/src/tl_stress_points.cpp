@@ -8,6 +8,7 @@
 #include <taut/core/error.hpp>
 #include <taut/internal/cell_kinematics.hpp>
 #include <taut/internal/cell_strips.hpp>
+#include <taut/internal/disjoint_sets.hpp>
 #include <taut/internal/describe.hpp>
 #include <taut/internal/formulations.hpp>
 #include <taut/internal/hyperelastic_form.hpp>
@@ -62,6 +63,13 @@ class TlStressPoints final : public HyperelasticForm<D> {
   /// That of the hourglass modes included.
   double strain_energy() const override;
 
+  std::vector<Index> bodies() const override {
+    DisjointSets sets(p_.n);
+    for (const Strip& s : cells_.strips())
+      for (const Index row : s.row)
+        for (Index j = 0; j <= s.count; ++j) sets.join(s.row[0], row + j);
+    return sets.numbers();
+  }
   std::int64_t pairs() const override { return cells_.cells() * cell_corners<D>; }
   std::size_t bytes() const override {
     std::size_t visits = 0;

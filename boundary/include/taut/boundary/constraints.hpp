@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <functional>
+#include <span>
 #include <taut/boundary/held_points.hpp>
 #include <taut/core/fields.hpp>
 #include <taut/core/types.hpp>
@@ -29,11 +31,23 @@ class Constraints {
   void finish(const Field& mass);
 
   void apply_to_displacements(double t, const Field& X, Field& u) const;
-  /// Velocities of prescribed components are the central difference of their displacement.
-  void apply_to_velocities(double t, const Field& X, Field& v) const;
+  /// Velocities of prescribed components are the central difference of their displacement over
+  /// t ± `window` [s], which should be a small part of a time step: histories have no scale of their own.
+  void apply_to_velocities(double t, const Field& X, Field& v, double window) const;
   /// Constrained components carry no acceleration of their own, so that norms of it are out-of-balance forces.
   void apply_to_accelerations(Field& a) const;
   bool empty() const { return sets_.empty() && std::all_of(held_.begin(), held_.end(), [](const auto& h) { return h.empty(); }); }
+
+  /// Bit d is set where component d of a particle is held or prescribed, for the first n particles.
+  std::vector<std::uint8_t> held(Index n) const;
+  /// Whether a prescribed displacement is another one at any of the times than it is at t.
+  bool move_later(double t, std::span<const double> times, const Field& X) const;
+  /// Calls f(point, axis) for each held point.
+  template <class F>
+  void for_each_point(F&& f) const {
+    for (int d = 0; d < D; ++d)
+      held_[static_cast<std::size_t>(d)].for_each([&](const BoundPoint<D>& point, const Displacement&) { f(point, d); });
+  }
 
  private:
   struct Set {

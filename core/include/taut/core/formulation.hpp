@@ -55,11 +55,13 @@ class Formulation : public Dynamics {
   std::span<const double> accelerations() override { return p_.a.flat(); }
   std::span<const double> masses() override { return p_.m_flat.flat(); }
   void constrain_positions(double t) override { constraints_.apply_to_displacements(t, p_.X, p_.u); }
-  void constrain_velocities(double t) override { constraints_.apply_to_velocities(t, p_.X, p_.v); }
+  void constrain_velocities(double t) override {
+    constraints_.apply_to_velocities(t, p_.X, p_.v, 1e-2 * stable_step());
+  }
 
   /// Set by the update that found the state broken.
   const std::optional<Failure>& failure() const { return failure_; }
-  /// Checks too costly for every evaluation (lost neighbours, runaway speed); sets `failure`.
+  /// Checks too costly for every evaluation (lost neighbours, runaway energy); sets `failure`.
   virtual void inspect();
 
   virtual Mat<D> cauchy_stress(Index i) const = 0;
@@ -74,9 +76,14 @@ class Formulation : public Dynamics {
   virtual void visit_stresses(const std::function<void(const StressSample<D>&)>& f) const;
   /// Of the modelled part of the body [J].
   virtual double strain_energy() const;
+  /// For each particle the number of the body that it is part of: those that internal forces bind. One for
+  /// all unless a form knows better.
+  virtual std::vector<Index> bodies() const { return std::vector<Index>(static_cast<std::size_t>(p_.n), 0); }
   virtual std::int64_t pairs() const = 0;
   virtual std::int64_t rebuilds() const { return 0; }
   virtual std::size_t bytes() const = 0;
+  /// Of what every form keeps.
+  std::size_t own_bytes() const { return companion_.size() * sizeof(Index); }
 
  protected:
   /// Applied loads, ties and constraints on top of the internal accelerations; the last act of
@@ -88,6 +95,9 @@ class Formulation : public Dynamics {
   const Loads<D>& loads_;
   const Method& method_;
   std::optional<Failure> failure_;
+
+ private:
+  std::vector<Index> companion_;  // of each particle: one near by that it is bound to, or itself
 };
 
 /// \throws InputError listing the valid names, or when the formulation cannot take a material.

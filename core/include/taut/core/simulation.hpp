@@ -17,8 +17,8 @@ namespace taut {
 
 /// How and where a formulation broke. A result, not an error.
 struct Breakdown {
-  std::string what;                ///< "J <= 0", "not a number", "runaway energy", "lost neighbours"
-  std::int64_t particle = -1;      ///< the user's id: index in the cloud as given
+  std::string what;            ///< "J <= 0", "not a number", "runaway energy", "lost neighbours", …
+  std::int64_t particle = -1;  ///< the user's id: index in the cloud as given; -1: none is to blame
   std::array<double, 3> X{}, x{};  ///< reference and current position [m] (unused components zero)
   double time = 0;                 ///< [s]
   std::int64_t step = 0;
@@ -36,6 +36,7 @@ struct RunResult {
   double time = 0;            ///< simulated time reached [s]
   double loop_seconds = 0;    ///< wall time of the time loop
   double residual = 0;        ///< relax: |out-of-balance force| / |applied force| at the end
+  double remaining_motion = 0;  ///< relax: what the slowest motion has still to go over what it has come
   std::int64_t rebuilds = 0;  ///< updated Lagrangian: pair list rebuilds
 };
 
@@ -51,7 +52,8 @@ struct RunOptions {
 };
 
 struct RelaxOptions {
-  double tolerance = 1e-6;  ///< wanted |out-of-balance force| / |applied force|
+  double tolerance = 1e-6;  ///< wanted |out-of-balance force| / |applied force|, the largest seen where no force is applied
+  static constexpr double still_moving = 1e-4;  ///< the second condition of equilibrium: `remaining_motion` at most
   double ramp_time = 0;     ///< loads grow smoothly from zero over this time [s]; 0: full at once
   double free_time = 0;  ///< motion without damping for this time [s] first: what sudden loads do to a body
   std::int64_t max_steps = 10'000'000;
@@ -119,15 +121,26 @@ class Simulation {
   /// Particles on the plane slide in it. The loads of a scene are those of the part that is modelled.
   void symmetry_plane(int axis, double at);
 
+  /// \throws InputError for what the parts refuse: particles that coincide or whose neighbours do not span the
+  /// space, masses and stable steps that are no positive finite numbers.
   void prepare();
+  /// \throws InputError as `check_run`.
   RunResult run(double duration, const RunOptions& options = {});
+  /// \throws InputError as `check_relax`.
   RunResult relax(const RelaxOptions& options = {});
+  /// What `run` does before its first step. \throws InputError as `prepare`, for options out of range, and for
+  /// steps too small ever to reach the end in the resolution of time (2^-53 of it).
+  void check_run(double duration, const RunOptions& options = {});
+  /// What `relax` does before its first step. \throws InputError as `prepare`, for options out of range, and
+  /// for loads that set a body in a rigid motion that nothing holds: which body and which motions.
+  void check_relax(const RelaxOptions& options = {});
   /// Calls `f(t)` at the start and after every `interval` seconds of simulated time (each step when 0) of
   /// `run`.
   void observe(double interval, std::function<void(double t)> f);
 
   // State, in the user's order of particles.
   std::size_t size() const;
+  double dx() const;  ///< nominal spacing [m]
   double time() const;
   Vec<D> reference_position(std::size_t id) const;
   Vec<D> position(std::size_t id) const;
@@ -142,7 +155,8 @@ class Simulation {
   Mat<D> deformation_gradient(std::size_t id) const;   ///< \throws InputError for updated Lagrangian forms
   double mass(std::size_t id) const;
   /// Displacement at a reference point: linear least squares over the nearest particles (exact on a
-  /// particle).
+  /// particle). It extrapolates beyond the body, by up to three spacings from the nearest particle: asking
+  /// for points that lie in it is up to the caller. \throws InputError farther out.
   Vec<D> displacement_at(const Vec<D>& X) const;
 
   double kinetic_energy() const;   ///< [J]

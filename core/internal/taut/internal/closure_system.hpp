@@ -12,6 +12,7 @@
 #include <taut/core/particles.hpp>
 #include <taut/integrators/vector_ops.hpp>
 #include <taut/internal/pair_payload.hpp>
+#include <taut/internal/powers.hpp>
 #include <utility>
 
 namespace taut {
@@ -110,7 +111,7 @@ class ClosureSystem {
     Field lambda(size(), D), residual = closure_defect(), direction(size(), D), image(size(), D);
     const double before = std::sqrt(dot(residual.flat(), residual.flat()));
     // Round-off of the closure of a cell's faces: below it there is nothing to solve for.
-    const double negligible = 1e-14 * std::pow(p_.dx, D - 1) * std::sqrt(static_cast<double>(p_.n));
+    const double negligible = 1e-14 * int_power(p_.dx, D - 1) * std::sqrt(static_cast<double>(p_.n));
     double rho = 0, now = before;
     for (int it = 0; it < iterations && now > negligible; ++it) {
       const double next = weighted_dot(inverse_diagonal_.flat(), residual.flat(), residual.flat());

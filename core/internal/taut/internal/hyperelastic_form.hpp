@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <taut/core/error.hpp>
 #include <taut/core/formulation.hpp>
 #include <taut/internal/stretch_bounds.hpp>
@@ -55,8 +56,11 @@ class HyperelasticForm : public Formulation<D> {
  protected:
   void fail_inverted(Index particle) {
     if (this->failure_) return;
-    this->failure_ =
-        Failure{p_.u.template vec<D>(particle).allFinite() ? "J <= 0" : "not a number", particle};
+    // J of a gradient that has overflowed, or of displacements about to, says nothing.
+    const Mat<D> F = this->deformation_gradient(particle);
+    const bool finite = std::isfinite(p_.u.template vec<D>(particle).squaredNorm()) &&
+                        std::isfinite(F.squaredNorm()) && std::isfinite(F.determinant());
+    this->failure_ = Failure{finite ? "J <= 0" : "not a number", particle};
   }
   void need_energies() const {
     for (const auto* material : materials_)

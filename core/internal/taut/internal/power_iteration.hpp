@@ -66,7 +66,8 @@ double largest_eigenvalue(Index n, Index total, const Field& m, Field& a, Apply&
       sums.aa += part.aa;
     }
     if (sums.yy > 0 && sums.ya > 0) eigenvalue = std::max(sums.ya / sums.yy, std::sqrt(sums.aa / sums.yy));
-    const double scale = sums.aa > 0 ? 1 / std::sqrt(sums.aa) : 0;
+    // Only to keep numbers within range; a power of two rounds nothing, in no system of units.
+    const double scale = sums.aa > 0 && std::isfinite(sums.aa) ? std::ldexp(1.0, -(std::ilogb(sums.aa) / 2)) : 0;
     for (int d = 0; d < D; ++d) {
       double* to = y.component(d);
       const double* from = a.component(d);

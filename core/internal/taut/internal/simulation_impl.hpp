@@ -66,6 +66,12 @@ struct SimulationImpl {
   void place_facets();
 };
 
+/// Whether steps of this length reach the end: not if they are lost in its rounding.
+bool advances(double end, double step);
+/// Times from now on at which histories are asked what a relaxation has ahead of it [s].
+template <int D>
+std::vector<double> relaxation_times(const SimulationImpl<D>& simulation, const RelaxOptions& options);
+
 /// Advances by `duration` [s]; the loop of Simulation::run.
 template <int D>
 RunResult integrate(SimulationImpl<D>& simulation, Integrator& integrator, double duration,

@@ -6,6 +6,7 @@
 #include <array>
 #include <taut/core/operators.hpp>
 #include <taut/internal/assembly.hpp>
+#include <taut/internal/disjoint_sets.hpp>
 #include <taut/internal/hyperelastic_form.hpp>
 #include <taut/internal/material_groups.hpp>
 #include <taut/internal/pair_passes.hpp>
@@ -49,6 +50,17 @@ class TotalLagrangian : public HyperelasticForm<D> {
     }
   }
 
+  std::vector<Index> bodies() const override {
+    DisjointSets sets(p_.n);
+    for (Index a = 0; a < p_.n; ++a)
+      pairs_.for_each(a, [&](Index b, std::int64_t, int) {
+        sets.join(a, b < p_.n ? b : p_.mirror.master(b - p_.mirror.begin()));
+      });
+    for (std::size_t k = 0; k + 1 < p_.ties.begin.size(); ++k)
+      for (std::size_t i = p_.ties.begin[k] + 1; i < p_.ties.begin[k + 1]; ++i)
+        sets.join(p_.ties.particles[i - 1], p_.ties.particles[i]);
+    return sets.numbers();
+  }
   std::int64_t pairs() const override { return pairs_.pairs(); }
   std::size_t bytes() const override {
     return pairs_.bytes() + op_.bytes() + Q_.bytes() + (p_.rule ? p_.rule->bytes() : 0);

@@ -11,6 +11,7 @@
 #include <taut/core/error.hpp>
 #include <taut/core/formulation.hpp>
 #include <taut/core/kernel.hpp>
+#include <taut/internal/disjoint_sets.hpp>
 #include <taut/internal/kernel_table.hpp>
 #include <taut/internal/material_groups.hpp>
 #include <taut/internal/simd.hpp>
@@ -65,6 +66,16 @@ class UpdatedLagrangian : public Formulation<D> {
     }
     return materials_[p_.material[static_cast<std::size_t>(i)]]->cauchy_stress(s,
                                                                                rho_material_.component(0)[i]);
+  }
+  std::vector<Index> bodies() const override {
+    DisjointSets sets(p_.n);
+    const double support = table_.support();
+    for (Index a = 0; a < p_.n; ++a)
+      list_.pairs().for_each(a, [&](Index b, std::int64_t, int) {
+        if ((p_.X.template vec<D>(a) - p_.X.template vec<D>(b)).norm() < support)
+          sets.join(a, b < p_.n ? b : p_.mirror.master(b - p_.mirror.begin()));
+      });
+    return sets.numbers();
   }
   std::int64_t pairs() const override { return list_.pairs().pairs(); }
   std::int64_t rebuilds() const override { return list_.builds() - 1; }
