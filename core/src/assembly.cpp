@@ -5,6 +5,7 @@
 #include <numeric>
 #include <taut/core/error.hpp>
 #include <taut/internal/assembly.hpp>
+#include <taut/internal/pair_rule.hpp>
 #include <taut/internal/interfaces.hpp>
 #include <taut/neighbors/search.hpp>
 
