@@ -194,7 +194,10 @@ Cloud<D> read_cloud(const std::filesystem::path& file, double dx) {
     if (!(dx > 0)) lines.fail("no spacing dx to be found: most particles coincide with another");
   }
   cloud.dx = dx;
-  if (cloud.V.empty()) cloud.V.assign(cloud.size(), std::pow(dx, D));
+  if (cloud.V.empty()) {
+    cloud.V.assign(cloud.size(), std::pow(dx, D));
+    cloud.guessed_volumes = true;
+  }
   return cloud;
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <taut/core/error.hpp>
 #include <taut/core/geometry.hpp>
+#include <taut/internal/shape_volume.hpp>
 
 namespace taut {
 namespace {
@@ -294,6 +295,7 @@ Cloud<D> make_cloud(const Shape<D>& shape, const LatticeOptions& options) {
   const bool divides = ((grid.spacing.array() - options.dx).abs() <= 1e-9 * options.dx).all();
   Cloud<D> cloud;
   cloud.dx = divides ? options.dx : std::pow(grid.cell_volume, 1.0 / D);
+  cloud.body_volume = estimate_volume(shape, (shape.max() - shape.min()).prod() / grid.cell_volume);
   cloud.X.resize(n);
   cloud.V.resize(n);
   if (nodes) cloud.B.resize(n);

@@ -247,7 +247,9 @@ void Simulation<D>::prepare() {
       s.particles.x.template set_vec<D>(i, X + s.initial_displacement(X));
     }
   if (!s.particles.mirror.empty()) s.particles.mirror.positions(s.particles.x);
-  s.formulation = make_formulation<D>({s.particles, s.constraints, s.loads, s.method});
+  auto formulation = make_formulation<D>({s.particles, s.constraints, s.loads, s.method});
+  s.health = s.health_of_setup = setup_health<D>(s, *formulation);
+  s.formulation = std::move(formulation);
   if (s.initial_velocity)
     for (Index i = 0; i < s.particles.n; ++i)
       s.particles.v.template set_vec<D>(i, s.initial_velocity(s.particles.X.template vec<D>(i)));
@@ -316,6 +318,11 @@ Vec<D> Simulation<D>::velocity(std::size_t id) const {
   prepared(*impl_);
   impl_->look();
   return impl_->particles.v.template vec<D>(impl_->place(id));
+}
+template <int D>
+const Health& Simulation<D>::health() const {
+  prepared(*impl_);
+  return impl_->health;
 }
 template <int D>
 Mat<D> Simulation<D>::cauchy_stress(std::size_t id) const {

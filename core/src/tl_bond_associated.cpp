@@ -57,6 +57,7 @@ class TlBondAssociated final : public TotalLagrangian<D> {
   }
 
   double strain_energy() const override;
+  double rough_limit() const override { return 0.06; }
   std::size_t bytes() const override { return Base::bytes() + F_.bytes() + share_.bytes(); }
 
  private:
@@ -319,7 +320,7 @@ double TlBondAssociated<D>::stiffest_mode(const LawsAtRest& laws) {
   const double eigenvalue = largest_eigenvalue<D>(p_.n, p_.total, p_.m, p_.a, [&](Field& y) {
     if (!p_.mirror.empty()) p_.mirror.vectors(y);
     accelerations(Columns<D>(y), false, stresses);
-  });
+  }, &this->stiffest_);
   std::fill(p_.a.flat().begin(), p_.a.flat().end(), 0.0);
   return eigenvalue;
 }

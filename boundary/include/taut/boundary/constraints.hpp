@@ -26,6 +26,12 @@ class Constraints {
   /// Constrained components carry no acceleration of their own, so that norms of it are out-of-balance forces.
   void apply_to_accelerations(Field& a) const;
   bool empty() const { return sets_.empty(); }
+  /// Whether any displacement is prescribed: constraints that are fixed do no work.
+  bool moving() const {
+    for (const Set& set : sets_)
+      if (set.displacement) return true;
+    return false;
+  }
 
  private:
   struct Set {

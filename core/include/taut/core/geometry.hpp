@@ -72,6 +72,8 @@ struct Cloud {
   std::vector<std::array<Index, 1 << D>> cells;
   std::vector<double> cell_share;  ///< part of each cell that is body, 0 … 1; empty where all are whole
   double dx = 0;  ///< nominal spacing [m]
+  double body_volume = 0;  ///< that of the shape, added layers left out [m^D]; 0 where unknown
+  bool guessed_volumes = false;  ///< V is dx^D everywhere for want of better
   std::size_t size() const { return X.size(); }
 };
 

@@ -11,6 +11,7 @@
 #include <taut/core/simulation.hpp>
 #include <taut/integrators/integrator.hpp>
 #include <taut/integrators/step_control.hpp>
+#include <taut/internal/health.hpp>
 #include <vector>
 
 namespace taut {
@@ -38,6 +39,8 @@ struct SimulationImpl {
   StepControl step_control;
   std::function<void()> complete_velocities;  // while a run leaves them at half steps
   double time = 0, setup_seconds = 0;
+  Health health_of_setup, health;  // the latter with that of the last run
+  HealthBalance<D> balance;        // at the start of runs that conserve energy
 
   // To be called before velocities are read.
   void look() const {

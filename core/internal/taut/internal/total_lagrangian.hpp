@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <array>
 #include <taut/core/operators.hpp>
+#include <taut/internal/health.hpp>
 #include <taut/internal/hyperelastic_form.hpp>
 #include <taut/internal/material_groups.hpp>
 #include <taut/internal/pair_passes.hpp>
@@ -51,6 +52,9 @@ class TotalLagrangian : public HyperelasticForm<D> {
       f({p_.X.template vec<D>(i), {&i, 1}, p_.material[static_cast<std::size_t>(i)], F, stress(i, F)});
     }
   }
+
+  void check(Health& health) const override { check_pair_operator<D>(p_, pairs_, op_, health); }
+  MotionSample motion() const override { return pair_motion<D>(p_, pairs_, op_); }
 
   std::int64_t pairs() const override { return pairs_.pairs(); }
   std::size_t bytes() const override { return pairs_.bytes() + op_.bytes() + Q_.bytes(); }
