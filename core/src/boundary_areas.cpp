@@ -118,7 +118,7 @@ double close_areas(Cloud<D>& cloud) {
 }
 
 template <int D>
-void estimate_areas(Cloud<D>& cloud) {
+double estimate_areas(Cloud<D>& cloud) {
   const Surroundings<D> around(cloud);
   const std::vector<Vec<D>> normal = surface_normals(cloud, around);
   if (std::all_of(normal.begin(), normal.end(), [](const Vec<D>& n) { return n.isZero(); }))
@@ -135,12 +135,12 @@ void estimate_areas(Cloud<D>& cloud) {
     });
     cloud.B[a] = surface_share(cloud, around, normal, a) * mean.normalized();
   }
-  close_areas(cloud);
+  return close_areas(cloud);
 }
 
 #define TAUT_INSTANTIATE(D)                  \
   template double close_areas<D>(Cloud<D>&); \
-  template void estimate_areas<D>(Cloud<D>&);
+  template double estimate_areas<D>(Cloud<D>&);
 TAUT_INSTANTIATE(1)
 TAUT_INSTANTIATE(2)
 TAUT_INSTANTIATE(3)

@@ -50,6 +50,9 @@ template <int D>
 Health setup_health(const SimulationImpl<D>& s, const Formulation<D>& formulation) {
   Health health;
   check_volume(s, health);
+  if (s.guessed_areas >= 0)
+    health.measures.push_back({"health_guessed_areas", s.guessed_areas, 0.2, false,
+                               "area vectors were guessed: change that it takes to close them", -1, {}});
   if (formulation.frequency() > 0) {
     double speed = 0;
     for (const auto& material : s.particles.materials) speed = std::max(speed, material->wave_speed());

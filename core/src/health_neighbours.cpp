@@ -1,13 +1,10 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <taut/internal/health.hpp>
 
 namespace taut {
 
-namespace {
-
-/// Which particles have nothing next to them on one side: where areas are known those with some, else those
-/// whose neighbours' mean is far off.
 template <int D>
 std::vector<bool> on_surface(const Particles<D>& p, const PairList& pairs) {
   constexpr double lopsided = 0.3;
@@ -33,10 +30,12 @@ std::vector<bool> on_surface(const Particles<D>& p, const PairList& pairs) {
   return surface;
 }
 
+namespace {
+
 /// Layers of particles from the surface to the middle of the body, where it is thinnest, and a particle there.
 template <int D>
 std::pair<int, Index> thinnest(const Particles<D>& p, const PairList& pairs, const std::vector<bool>& surface) {
-  constexpr int deep = 1 << 20;
+  constexpr int deep = 4;  // further in, a body is thick
   std::vector<int> depth(surface.size(), deep);
   std::vector<Index> order;
   for (Index a = 0; a < p.n; ++a)
@@ -45,7 +44,7 @@ std::pair<int, Index> thinnest(const Particles<D>& p, const PairList& pairs, con
   for (std::size_t k = 0; k < order.size(); ++k)
     pairs.for_each(order[k], [&](Index b, std::int64_t, int) {
       int& of = depth[static_cast<std::size_t>(own(b))];
-      if (of < deep) return;
+      if (of < deep || depth[static_cast<std::size_t>(order[k])] + 1 == deep) return;
       of = depth[static_cast<std::size_t>(order[k])] + 1;
       order.push_back(own(b));
     });
@@ -58,7 +57,7 @@ std::pair<int, Index> thinnest(const Particles<D>& p, const PairList& pairs, con
       if (depth[j] > depth[static_cast<std::size_t>(order[k])]) of = std::max(of, reach[j]);
     });
   }
-  int least = deep;
+  int least = deep + 1;
   Index at = no_particle;
   for (const Index a : order)
     if (reach[static_cast<std::size_t>(a)] < least) least = reach[static_cast<std::size_t>(at = a)];
@@ -77,9 +76,9 @@ HealthMeasure measure_at(const Particles<D>& p, std::string name, double value, 
 }
 
 template <int D>
-void add_spurious_forces(const Particles<D>& p, const PairList& pairs, const Field& force, Health& health) {
+void add_spurious_forces(const Particles<D>& p, const std::vector<bool>& surface, const Field& force, double limit_inside,
+                         double limit_faces, Health& health) {
   const double face = std::pow(p.dx, D - 1);
-  const std::vector<bool> surface = on_surface(p, pairs);
   double inside = 0, faces = 0, areas = 0, worst = -1, worst_face = -1;
   std::int64_t count = 0;
   Index at = no_particle, at_face = no_particle;
@@ -100,38 +99,40 @@ void add_spurious_forces(const Particles<D>& p, const PairList& pairs, const Fie
   }
   if (count > 0)
     health.measures.push_back(measure_at(p, "health_spurious_force", std::sqrt(inside / static_cast<double>(count)),
-                                         0.1, "force of a constant stress inside the body, over that on a cell's face (rms)", at));
+                                         limit_inside, "force of a constant stress inside the body, over that on a cell's face (rms)", at));
   if (areas > 0)
-    health.measures.push_back(measure_at(p, "health_spurious_face_force", std::sqrt(faces / areas), 0.2,
+    health.measures.push_back(measure_at(p, "health_spurious_face_force", std::sqrt(faces / areas), limit_faces,
                                          "what a constant stress leaves of its tractions on the faces, over these (rms)", at_face));
 }
 
 template <int D>
-void add_neighbourhoods(const Particles<D>& p, const PairList& pairs, Health& health) {
+void add_neighbourhoods(const Particles<D>& p, const PairList& pairs, const std::vector<bool>& surface, Health& health) {
   Index fewest = std::numeric_limits<Index>::max(), at = no_particle;
-  for (Index a = 0; a < p.n; ++a) {
-    Index count = 0;
-    pairs.for_each(a, [&](Index, std::int64_t, int) { ++count; });
-    if (count < fewest) fewest = count, at = a;
+  for (Index s = 0; s * lanes < p.n; ++s) {
+    std::array<Index, lanes> count{};
+    for (std::int64_t k = pairs.begin(s); k < pairs.begin(s + 1); ++k)
+      for (int l = 0; l < lanes; ++l) count[static_cast<std::size_t>(l)] += pairs.mask(k) >> l & 1;
+    for (Index a = s * lanes; a < std::min(p.n, (s + 1) * lanes); ++a)
+      if (const Index of = count[static_cast<std::size_t>(a % lanes)]; of < fewest) fewest = of, at = a;
   }
-  // The corner of a lattice has this many.
-  constexpr int corner = (1 << D) - 1;
-  HealthMeasure few = measure_at(p, "health_fewest_neighbours", fewest, corner, "neighbours of the particle with the fewest", at);
+  HealthMeasure few = measure_at(p, "health_fewest_neighbours", fewest, D, "neighbours of the particle with the fewest", at);
   few.from_below = true;
   health.measures.push_back(std::move(few));
   if (D == 1) return;
-  const auto [layers, where] = thinnest(p, pairs, on_surface(p, pairs));
+  const auto [layers, where] = thinnest(p, pairs, surface);
   if (where < 0) return;
   HealthMeasure thin = measure_at(p, "health_thickness", 2 * layers + 1, -told_only,
-                                  "particles across the body where it is thinnest, to one", where);
+                                  "particles across the body where it is thinnest, to one; 9: that or more", where);
   thin.from_below = true;
   health.measures.push_back(std::move(thin));
 }
 
-#define TAUT_INSTANTIATE(D)                                                                                  \
-  template HealthMeasure measure_at<D>(const Particles<D>&, std::string, double, double, std::string, Index); \
-  template void add_spurious_forces<D>(const Particles<D>&, const PairList&, const Field&, Health&);         \
-  template void add_neighbourhoods<D>(const Particles<D>&, const PairList&, Health&);
+#define TAUT_INSTANTIATE(D)                                                                                    \
+  template HealthMeasure measure_at<D>(const Particles<D>&, std::string, double, double, std::string, Index);  \
+  template std::vector<bool> on_surface<D>(const Particles<D>&, const PairList&);                              \
+  template void add_spurious_forces<D>(const Particles<D>&, const std::vector<bool>&, const Field&, double,    \
+                                       double, Health&);                                                       \
+  template void add_neighbourhoods<D>(const Particles<D>&, const PairList&, const std::vector<bool>&, Health&);
 TAUT_INSTANTIATE(1)
 TAUT_INSTANTIATE(2)
 TAUT_INSTANTIATE(3)

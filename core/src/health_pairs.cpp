@@ -18,6 +18,14 @@ Field moduli(const Particles<D>& p) {
   return E;
 }
 
+/// How much more than in a soft body the same roughness costs where volume hardly changes: what locks is the part of
+/// it that would change volume (nu 0.49 in plane strain: 2.6).
+template <int D>
+double locking(const Material<D>& material) {
+  const double modulus = material.density() * material.wave_speed() * material.wave_speed();
+  return 1 + 0.1 * std::max(0.0, modulus / material.parameters().E - 1);
+}
+
 /// Largest |sum_b X_ab (x) G_ab M_a^T - I| of a slice's particles: what the operator makes of any linear field.
 template <int D, class Payload>
 Pack linear_field_error(Index s, const PairList& pairs, const Payload& payload, const Columns<D>& X,
@@ -61,18 +69,21 @@ void check_pair_operator(const Particles<D>& p, const PairList& pairs, const Pai
       std::max_element(error.component(0), error.component(0) + p.n) - error.component(0));
   health.measures.push_back(measure_at(p, "health_linear_field_error", std::sqrt(error.component(0)[worst]), 1e-3,
                                        "largest error of the gradient of a linear field", worst));
-  add_spurious_forces(p, pairs, force, health);
-  add_neighbourhoods(p, pairs, health);
+  const std::vector<bool> surface = on_surface(p, pairs);
+  add_spurious_forces(p, surface, force, 0.05, 0.1, health);
+  add_neighbourhoods(p, pairs, surface, health);
 }
 
 template <int D>
 MotionSample pair_motion(const Particles<D>& p, const PairList& pairs, const PairOperator<D>& op) {
   struct Sums {
-    double rough = 0, strain = 0, squares = 0, volume = 0, worst = 0;
+    double rough = 0, strain = 0, interface = 0, squares = 0, volume = 0, worst = 0;
     Index worst_at = no_particle;
   };
   const Field moduli_of = moduli(p);
   const double* E = moduli_of.component(0);
+  std::vector<double> locks;
+  for (const auto& material : p.materials) locks.push_back(locking(*material));
   const Columns<D> x(p.x), X(p.X);
   const Index slices = (p.n + lanes - 1) / lanes;
   std::vector<Sums> sums(static_cast<std::size_t>(slices));
@@ -86,7 +97,7 @@ MotionSample pair_motion(const Particles<D>& p, const PairList& pairs, const Pai
         for (int c = 0; c < D * D; ++c) F[c] += load(op.F0.component(c) + i);
       for (int d = 0; d < D; ++d) Xi[d] = load(X.c[d] + i), xi[d] = load(x.c[d] + i);
       const Pack Ei = load(E + i);
-      Pack rough = pack(0), squares = pack(0), count = pack(0), worst = pack(0);
+      Pack rough = pack(0), squares = pack(0), count = pack(0), worst = pack(0), contrast = pack(0);
       for_slots(pairs, s, [&](std::int64_t k, auto&& at) TAUT_INLINE_LAMBDA {
         const PackMask pair = lanes_of(pairs.mask(k));
         Pack Xab[D], r2 = pack(0), R2 = pack(0);
@@ -103,6 +114,8 @@ MotionSample pair_motion(const Particles<D>& p, const PairList& pairs, const Pai
         // Across an interface the softer side gives way: moduli in series.
         const Pack Eb = at(E), series = pair ? 2 * Ei * Eb / (Ei + Eb) : pack(0);
         rough += series * relative;
+        const Pack step = Eb > Ei ? Eb - Ei : Ei - Eb, jump = pair ? step / (Ei + Eb) : pack(0);
+        contrast = jump > contrast ? jump : contrast;
         squares += relative;
         count += pair ? pack(1) : pack(0);
         worst = relative > worst ? relative : worst;
@@ -118,8 +131,9 @@ MotionSample pair_motion(const Particles<D>& p, const PairList& pairs, const Pai
       for (int l = 0; l < std::min<Index>(lanes, p.n - i); ++l) {
         if (!(count[l] > 0)) continue;
         const double V = p.V.component(0)[i + l] * p.modelled_share(i + l);
-        sum.rough += V * rough[l] / count[l];
+        sum.rough += V * locks[p.material[static_cast<std::size_t>(i + l)]] * rough[l] / count[l];
         sum.strain += V * Ei[l] * strain[l];
+        sum.interface += V * Ei[l] * strain[l] * contrast[l];
         sum.squares += V * squares[l] / count[l];
         sum.volume += V;
         if (worst[l] > sum.worst) sum.worst = worst[l], sum.worst_at = i + l;
@@ -130,6 +144,7 @@ MotionSample pair_motion(const Particles<D>& p, const PairList& pairs, const Pai
   for (const Sums& sum : sums) {
     all.rough += sum.rough;
     all.strain += sum.strain;
+    all.interface += sum.interface;
     all.squares += sum.squares;
     all.volume += sum.volume;
     if (sum.worst > all.worst) all.worst = sum.worst, all.worst_at = sum.worst_at;
@@ -138,6 +153,7 @@ MotionSample pair_motion(const Particles<D>& p, const PairList& pairs, const Pai
   sample.known = true;
   sample.rough = all.rough;
   sample.strain = all.strain;
+  sample.interface = p.materials.size() > 1 ? all.interface : -1;
   sample.worst = std::sqrt(all.worst);
   sample.worst_at = all.worst_at;
   sample.mean = all.volume > 0 ? std::sqrt(all.squares / all.volume) : 0;

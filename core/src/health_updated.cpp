@@ -17,8 +17,10 @@ void check_updated_operator(const Particles<D>& p, const PairList& pairs, const 
     });
     force.template set_vec<D>(static_cast<std::size_t>(a), sum);
   }
-  add_spurious_forces(p, pairs, force, health);
-  add_neighbourhoods(p, pairs, health);
+  const std::vector<bool> surface = on_surface(p, pairs);
+  // None of these forms closes, free bodies move rightly for all that: told, but no reason to be flagged.
+  add_spurious_forces(p, surface, force, told_only, told_only, health);
+  add_neighbourhoods(p, pairs, surface, health);
 }
 
 template <int D>

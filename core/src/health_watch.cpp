@@ -17,6 +17,25 @@ Eigen::Vector3d as_3d(const Vec<D>& v) {
 
 }  // namespace
 
+namespace {
+
+/// Kinetic energy about the centre of mass [J].
+template <int D>
+double own_motion(const Particles<D>& p) {
+  Vec<D> momentum = Vec<D>::Zero();
+  double mass = 0, squares = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(p.n); ++i) {
+    const double m = p.m.component(0)[i];
+    const Vec<D> v = p.v.template vec<D>(i);
+    momentum += m * v;
+    mass += m;
+    squares += m * v.squaredNorm();
+  }
+  return 0.5 * std::max(0.0, squares - momentum.squaredNorm() / mass);
+}
+
+}  // namespace
+
 template <int D>
 HealthBalance<D> HealthBalance<D>::of(const SimulationImpl<D>& s) {
   HealthBalance b;
@@ -66,9 +85,12 @@ void HealthWatch<D>::look() {
   if (!now.known) return;
   const auto up = [](double& to, double value) { to = std::max(to, value); };
   up(worst_.rough, now.rough);
-  up(worst_.strain, now.strain);
+  // Moving bodies have as much energy in their motion; those that spin or fly may have next to none in strains,
+  // so that any wave would count. The sums are twice the energy.
+  up(worst_.strain, std::max(now.strain, 2 * own_motion(s_.particles)));
   up(worst_.mean, now.mean);
   up(worst_.density, now.density);
+  up(worst_.interface, now.interface);
   if (now.worst > worst_.worst) worst_.worst = now.worst, worst_.worst_at = now.worst_at;
   if (now.gap > worst_.gap) worst_.gap = now.gap, worst_.gap_at = now.gap_at;
   worst_.known = true;
@@ -90,6 +112,10 @@ void HealthWatch<D>::add_motion(Health& health) const {
                                        "largest motion between neighbours that gradients do not see, over their distance",
                                        worst_.worst_at));
   health.measures.push_back(measure_at(p, "health_nonaffine_mean", worst_.mean, told_only, "the same, root mean square", no_particle));
+  if (worst_.interface >= 0 && !noise)
+    health.measures.push_back(measure_at(p, "health_interface", worst_.interface / worst_.strain, 0.07,
+                                         "strain energy of particles next to a material of another stiffness, over all",
+                                         no_particle));
   if (worst_.density >= 0)
     health.measures.push_back(measure_at(p, "health_density_error", worst_.density, 0.02,
                                          "volume from the density over that from the positions, less one (rms)", no_particle));

@@ -18,9 +18,9 @@ double hashed(std::uint64_t k) {
 
 template <int D>
 double estimate_volume(const Shape<D>& shape, double cells) {
-  constexpr double most = 1 << 17;
+  constexpr double most = 1 << 16;
   const Vec<D> edges = shape.max() - shape.min();
-  const double wanted = std::clamp(cells * std::pow(4, D), 1024.0, most);
+  const double wanted = std::clamp(4 * cells, 4096.0, most);
   const double edge = std::pow(edges.prod() / wanted, 1.0 / D);
   std::int64_t count[D], all = 1;
   for (int d = 0; d < D; ++d) all *= count[d] = std::max<std::int64_t>(1, std::llround(edges[d] / edge));

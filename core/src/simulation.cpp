@@ -211,8 +211,9 @@ void Simulation<D>::observe(double interval, std::function<void(double)> f) {
 
 namespace {
 // Boundary areas fit for operators that need them: estimated where there are none, closed where they are given.
+// Returns the change of closing estimated ones, else -1.
 template <int D>
-void enclose(Cloud<D>& cloud) {
+double enclose(Cloud<D>& cloud) {
   if (cloud.B.empty()) return estimate_areas(cloud);
   constexpr double tolerable = 0.2;
   const double change = close_areas(cloud);
@@ -221,6 +222,7 @@ void enclose(Cloud<D>& cloud) {
         fmt::format("the boundary area vectors do not enclose the body: closing them (sum B = 0, sum X (x) B = "
                     "volume) would change them by {:.0f} %. Check their signs and the volumes, or leave them out",
                     100 * change));
+  return -1;
 }
 }  // namespace
 
@@ -229,7 +231,7 @@ void Simulation<D>::prepare() {
   if (impl_->formulation) return;
   const auto start = std::chrono::steady_clock::now();
   SimulationImpl<D>& s = *impl_;
-  if (needs_areas(s.method.operators) && s.planes.empty()) enclose(s.cloud);
+  if (needs_areas(s.method.operators) && s.planes.empty()) s.guessed_areas = enclose(s.cloud);
   const double reach = s.method.support_dx * s.cloud.dx * (1 + s.method.skin);
   s.particles = assemble<D>(s.cloud, s.materials, s.material, s.planes, reach);
   s.cloud.cells = {};  // the particles have them now

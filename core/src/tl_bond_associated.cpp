@@ -57,7 +57,7 @@ class TlBondAssociated final : public TotalLagrangian<D> {
   }
 
   double strain_energy() const override;
-  double rough_limit() const override { return 0.06; }
+  double rough_limit() const override { return 0.3; }
   std::size_t bytes() const override { return Base::bytes() + F_.bytes() + share_.bytes(); }
 
  private:

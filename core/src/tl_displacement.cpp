@@ -35,7 +35,7 @@ class TlDisplacement final : public TotalLagrangian<D> {
 
   void update_accelerations(double) override;
   double strain_energy() const override;
-  double rough_limit() const override { return 0.06; }
+  double rough_limit() const override { return taut::rough_limit(this->method_.operators); }
   std::size_t bytes() const override { return Base::bytes() + (control_ ? control_->bytes() : 0); }
 
  private:

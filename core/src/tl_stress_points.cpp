@@ -60,7 +60,7 @@ class TlStressPoints final : public HyperelasticForm<D> {
   /// That of the hourglass modes included.
   double strain_energy() const override;
   MotionSample motion() const override;
-  double rough_limit() const override { return 0.06; }
+  double rough_limit() const override { return 0.1; }
 
   std::int64_t pairs() const override { return cells_.cells() * cell_corners<D>; }
   std::size_t bytes() const override {

@@ -335,6 +335,23 @@ inline Answer cantilever(const Method& m, double dx, double jitter = 0) {
       });
 }
 
+/// The same in plane strain at nu 0.49: tip -36.60 mm (finite elements, their limit).
+inline Answer locking(const Method& m, double dx) {
+  return answer(
+      [&] {
+        Simulation<2> s(make_cloud(box<2>({0, 0}, {0.2, 0.02}), {.dx = dx, .cells = true}),
+                        law<2>(m, "st_venant_kirchhoff", {.E = 20e6, .nu = 0.49, .density = 1000, .plane = Plane::strain}), m);
+        s.clamp(s.face("x_min"));
+        s.load(s.face("x_max"), {0, -250});
+        return s;
+      },
+      [](Simulation<2>& s, double& error) {
+        const RunResult r = s.relax({.tolerance = 1e-5, .max_steps = 100000});
+        error = s.displacement_at({0.2, 0.01}).y() / -0.0366 - 1;
+        return r;
+      });
+}
+
 /// 07: a cantilever 1 x 0.1 x 0.05 m, nu 0.49, 12 kN on its end: tip -0.0662 m (finite elements).
 inline Answer solid(const Method& m, double dx) {
   return answer(

@@ -134,8 +134,8 @@ double close_areas(Cloud<D>& cloud);
 /// Finds the surface particles of a cloud without area vectors and gives them some: those whose neighbours
 /// within 2.1 dx leave a cone free, with the direction in which there is nothing as normal and one over the
 /// density of surface particles as area; closed as above. Meant for bodies sampled up to their surface, two
-/// spacings thick or more. \throws InputError when no particle is found on a surface, and as `close_areas`.
+/// spacings thick or more. Returns the change by closing, as `close_areas`. \throws InputError when no particle is found on a surface, and as `close_areas`.
 template <int D>
-void estimate_areas(Cloud<D>& cloud);
+double estimate_areas(Cloud<D>& cloud);
 
 }  // namespace taut

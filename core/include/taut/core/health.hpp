@@ -46,6 +46,7 @@ struct MotionSample {
   double worst = 0;        ///< largest |x_ab - F_a X_ab| / |X_ab|
   std::int32_t worst_at = -1;  ///< internal index
   double mean = 0;         ///< root of the mean square of the same
+  double interface = -1;   ///< part of `strain` that is of particles next to another material, times (E - E') / (E + E')
   double density = -1;     ///< updated forms: rms of J from density over J from positions, less one
   double gap = -1;         ///< updated forms: largest distance of particles that touched over what F makes of it
   std::int32_t gap_at = -1;

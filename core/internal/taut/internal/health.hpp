@@ -41,12 +41,17 @@ template <int D>
 MotionSample updated_motion(const Particles<D>& p, const std::vector<std::array<Index, 2>>& touching, const Field& rho);
 
 // What the sweeps above have in common.
-/// Rows of spurious forces of a unit stress, f_a + B_a, as measures. `areas`: whether B is known.
+/// Which particles have nothing next to them on one side: where areas are known those with some, else those
+/// whose neighbours' mean is far off.
 template <int D>
-void add_spurious_forces(const Particles<D>& p, const PairList& pairs, const Field& force, Health& health);
+std::vector<bool> on_surface(const Particles<D>& p, const PairList& pairs);
+/// Forces of a unit stress: those inside, and what those on faces leave of B where that is known.
+template <int D>
+void add_spurious_forces(const Particles<D>& p, const std::vector<bool>& surface, const Field& force, double limit_inside,
+                         double limit_faces, Health& health);
 /// Fewest neighbours, and the fewest particles across.
 template <int D>
-void add_neighbourhoods(const Particles<D>& p, const PairList& pairs, Health& health);
+void add_neighbourhoods(const Particles<D>& p, const PairList& pairs, const std::vector<bool>& surface, Health& health);
 
 /// Energies and momenta of a state; those of the planes' other side left out.
 template <int D>

@@ -40,6 +40,7 @@ struct SimulationImpl {
   std::function<void()> complete_velocities;  // while a run leaves them at half steps
   double time = 0, setup_seconds = 0;
   Health health_of_setup, health;  // the latter with that of the last run
+  double guessed_areas = -1;       // change that closing made to area vectors that were guessed
   HealthBalance<D> balance;        // at the start of runs that conserve energy
 
   // To be called before velocities are read.
