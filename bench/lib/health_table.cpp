@@ -42,7 +42,8 @@ void write_health(HtmlPage& page, const SceneReport& part) {
     if (runs.empty() || runs.back().first != c.run) runs.push_back({c.run, {}});
     for (std::vector<HealthMeasure>* into : {&columns, &runs.back().second})
       for (const HealthMeasure& m : c.health.measures) {
-        const auto found = std::find_if(into->begin(), into->end(), [&](const HealthMeasure& o) { return o.name == m.name; });
+        const auto found = std::find_if(into->begin(), into->end(),
+                                        [&](const HealthMeasure& o) { return o.name == m.name; });
         if (found == into->end())
           into->push_back(m);
         else if (worse(m, *found))
@@ -56,8 +57,8 @@ void write_health(HtmlPage& page, const SceneReport& part) {
   for (const auto& [run, measures] : runs) {
     std::vector<HtmlCell> row = {{run->label, run_colour(static_cast<int>(run - part.scene->runs.data()))}};
     for (const HealthMeasure& column : columns) {
-      const auto found =
-          std::find_if(measures.begin(), measures.end(), [&](const HealthMeasure& m) { return m.name == column.name; });
+      const auto found = std::find_if(measures.begin(), measures.end(),
+                                      [&](const HealthMeasure& m) { return m.name == column.name; });
       row.push_back(found == measures.end() ? HtmlCell{"", "number quiet"} : cell_of(*found));
     }
     rows.push_back(std::move(row));
@@ -65,7 +66,8 @@ void write_health(HtmlPage& page, const SceneReport& part) {
   page.heading(3, "Health: can these runs be trusted?");
   page.table(header, rows);
   page.paragraph(
-      "The worst of each run's cases. Red is beyond the limit: the run is suspect, and its answer may be wrong by more than "
+      "The worst of each run's cases. Red is beyond the limit: the run is suspect, and its answer may be "
+      "wrong by more than "
       "10 %; without a colour is what has no limit. Green is no proof.",
       "quiet");
   std::vector<std::vector<HtmlCell>> lines;

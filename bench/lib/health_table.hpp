@@ -7,8 +7,8 @@
 
 namespace taut::bench {
 
-/// A table, runs by measures, green to red: of each measure the worst of a run's cases; below it one line of meaning
-/// each.
+/// A table, runs by measures, green to red: of each measure the worst of a run's cases; below it one line of
+/// meaning each.
 void write_health(HtmlPage& page, const SceneReport& part);
 
 }  // namespace taut::bench

@@ -22,7 +22,8 @@ const HealthMeasure* Health::find(const std::string& name) const {
 std::string Health::complaints() const {
   std::string text;
   for (const HealthMeasure& m : measures)
-    if (m.flagged()) text += fmt::format("{}{} {:.3g} (limit {:g})", text.empty() ? "" : ", ", m.name, m.value, m.limit);
+    if (m.flagged())
+      text += fmt::format("{}{} {:.3g} (limit {:g})", text.empty() ? "" : ", ", m.name, m.value, m.limit);
   return text;
 }
 
@@ -36,12 +37,22 @@ void check_volume(const SimulationImpl<D>& s, Health& health) {
   for (std::size_t i = 0; i < cloud.size(); ++i)
     if (cloud.extra.empty() || !cloud.extra[i]) volume += cloud.V[i];
   if (cloud.body_volume > 0)
-    health.measures.push_back({"health_volume_error", std::abs(volume / cloud.body_volume - 1), 0.05, false,
-                               "volume of the particles over that of the body, less one", -1, {}});
+    health.measures.push_back({"health_volume_error",
+                               std::abs(volume / cloud.body_volume - 1),
+                               0.05,
+                               false,
+                               "volume of the particles over that of the body, less one",
+                               -1,
+                               {}});
   if (!cloud.guessed_volumes) return;
   // Each particle has a whole cell; those on a face may have half of one, or not.
-  health.measures.push_back({"health_volume_guessed", 1, 0, false,
-                             "volumes were not given: each particle has a whole cell, on faces too", -1, {}});
+  health.measures.push_back({"health_volume_guessed",
+                             1,
+                             0,
+                             false,
+                             "volumes were not given: each particle has a whole cell, on faces too",
+                             -1,
+                             {}});
 }
 
 }  // namespace
@@ -51,26 +62,36 @@ Health setup_health(const SimulationImpl<D>& s, const Formulation<D>& formulatio
   Health health;
   check_volume(s, health);
   if (s.guessed_areas >= 0)
-    health.measures.push_back({"health_guessed_areas", s.guessed_areas, 0.2, false,
-                               "area vectors were guessed: change that it takes to close them", -1, {}});
+    health.measures.push_back({"health_guessed_areas",
+                               s.guessed_areas,
+                               0.2,
+                               false,
+                               "area vectors were guessed: change that it takes to close them",
+                               -1,
+                               {}});
   if (formulation.frequency() > 0) {
     double speed = 0;
     for (const auto& material : s.particles.materials) speed = std::max(speed, material->wave_speed());
     const Index at = formulation.stiffest();
     const double relative = formulation.frequency() * s.particles.dx / speed;
-    // Sane operators have 1.7 to 4, with small cells on a surface or a strong control a multiple of it; what is
-    // a hundred times slower than it should be was never anything but wrong.
+    // Sane operators have 1.7 to 4, with small cells on a surface or a strong control a multiple of it; what
+    // is a hundred times slower than it should be was never anything but wrong.
     constexpr double sick = 100;
     if (relative > sick)
-      throw InputError(fmt::format(
-          "the operators are sick at particle {} at {}: their highest frequency is {:.3g} c / dx, sane ones have 1.7 to 4, "
-          "so that runs would take {:.0f} times the steps, to no good result. Look for volumes that are far too small, "
-          "particles that nearly coincide, or area vectors that do not fit; or use other operators or a larger support_dx",
-          at < 0 ? -1 : s.particles.id[static_cast<std::size_t>(at)],
-          at < 0 ? std::string("?") : describe<D>(s.particles.X.template vec<D>(static_cast<std::size_t>(at))), relative,
-          relative / 3));
+      throw InputError(
+          fmt::format("the operators are sick at particle {} at {}: their highest frequency is {:.3g} c / "
+                      "dx, sane ones have 1.7 to 4, "
+                      "so that runs would take {:.0f} times the steps, to no good result. Look for volumes "
+                      "that are far too small, "
+                      "particles that nearly coincide, or area vectors that do not fit; or use other "
+                      "operators or a larger support_dx",
+                      at < 0 ? -1 : s.particles.id[static_cast<std::size_t>(at)],
+                      at < 0 ? std::string("?")
+                             : describe<D>(s.particles.X.template vec<D>(static_cast<std::size_t>(at))),
+                      relative, relative / 3));
     health.measures.push_back(measure_at(s.particles, "health_frequency", relative, 8.0,
-                                         "highest frequency times dx / c: the step that the operators cost", at));
+                                         "highest frequency times dx / c: the step that the operators cost",
+                                         at));
   }
   formulation.check(health);
   return health;

@@ -32,9 +32,11 @@ std::vector<bool> on_surface(const Particles<D>& p, const PairList& pairs) {
 
 namespace {
 
-/// Layers of particles from the surface to the middle of the body, where it is thinnest, and a particle there.
+/// Layers of particles from the surface to the middle of the body, where it is thinnest, and a particle
+/// there.
 template <int D>
-std::pair<int, Index> thinnest(const Particles<D>& p, const PairList& pairs, const std::vector<bool>& surface) {
+std::pair<int, Index> thinnest(const Particles<D>& p, const PairList& pairs,
+                               const std::vector<bool>& surface) {
   constexpr int deep = 4;  // further in, a body is thick
   std::vector<int> depth(surface.size(), deep);
   std::vector<Index> order;
@@ -67,7 +69,8 @@ std::pair<int, Index> thinnest(const Particles<D>& p, const PairList& pairs, con
 }  // namespace
 
 template <int D>
-HealthMeasure measure_at(const Particles<D>& p, std::string name, double value, double limit, std::string meaning, Index at) {
+HealthMeasure measure_at(const Particles<D>& p, std::string name, double value, double limit,
+                         std::string meaning, Index at) {
   HealthMeasure m{std::move(name), value, limit, false, std::move(meaning), -1, {}};
   if (at < 0 || at >= p.n) return m;
   m.particle = p.id[static_cast<std::size_t>(at)];
@@ -76,8 +79,8 @@ HealthMeasure measure_at(const Particles<D>& p, std::string name, double value, 
 }
 
 template <int D>
-void add_spurious_forces(const Particles<D>& p, const std::vector<bool>& surface, const Field& force, double limit_inside,
-                         double limit_faces, Health& health) {
+void add_spurious_forces(const Particles<D>& p, const std::vector<bool>& surface, const Field& force,
+                         double limit_inside, double limit_faces, Health& health) {
   const double face = std::pow(p.dx, D - 1);
   double inside = 0, faces = 0, areas = 0, worst = -1, worst_face = -1;
   std::int64_t count = 0;
@@ -98,15 +101,18 @@ void add_spurious_forces(const Particles<D>& p, const std::vector<bool>& surface
     }
   }
   if (count > 0)
-    health.measures.push_back(measure_at(p, "health_spurious_force", std::sqrt(inside / static_cast<double>(count)),
-                                         limit_inside, "force of a constant stress inside the body, over that on a cell's face (rms)", at));
+    health.measures.push_back(
+        measure_at(p, "health_spurious_force", std::sqrt(inside / static_cast<double>(count)), limit_inside,
+                   "force of a constant stress inside the body, over that on a cell's face (rms)", at));
   if (areas > 0)
-    health.measures.push_back(measure_at(p, "health_spurious_face_force", std::sqrt(faces / areas), limit_faces,
-                                         "what a constant stress leaves of its tractions on the faces, over these (rms)", at_face));
+    health.measures.push_back(
+        measure_at(p, "health_spurious_face_force", std::sqrt(faces / areas), limit_faces,
+                   "what a constant stress leaves of its tractions on the faces, over these (rms)", at_face));
 }
 
 template <int D>
-void add_neighbourhoods(const Particles<D>& p, const PairList& pairs, const std::vector<bool>& surface, Health& health) {
+void add_neighbourhoods(const Particles<D>& p, const PairList& pairs, const std::vector<bool>& surface,
+                        Health& health) {
   Index fewest = std::numeric_limits<Index>::max(), at = no_particle;
   for (Index s = 0; s * lanes < p.n; ++s) {
     std::array<Index, lanes> count{};
@@ -115,24 +121,28 @@ void add_neighbourhoods(const Particles<D>& p, const PairList& pairs, const std:
     for (Index a = s * lanes; a < std::min(p.n, (s + 1) * lanes); ++a)
       if (const Index of = count[static_cast<std::size_t>(a % lanes)]; of < fewest) fewest = of, at = a;
   }
-  HealthMeasure few = measure_at(p, "health_fewest_neighbours", fewest, D, "neighbours of the particle with the fewest", at);
+  HealthMeasure few =
+      measure_at(p, "health_fewest_neighbours", fewest, D, "neighbours of the particle with the fewest", at);
   few.from_below = true;
   health.measures.push_back(std::move(few));
   if (D == 1) return;
   const auto [layers, where] = thinnest(p, pairs, surface);
   if (where < 0) return;
-  HealthMeasure thin = measure_at(p, "health_thickness", 2 * layers + 1, -told_only,
-                                  "particles across the body where it is thinnest, to one; 9: that or more", where);
+  HealthMeasure thin =
+      measure_at(p, "health_thickness", 2 * layers + 1, -told_only,
+                 "particles across the body where it is thinnest, to one; 9: that or more", where);
   thin.from_below = true;
   health.measures.push_back(std::move(thin));
 }
 
-#define TAUT_INSTANTIATE(D)                                                                                    \
-  template HealthMeasure measure_at<D>(const Particles<D>&, std::string, double, double, std::string, Index);  \
-  template std::vector<bool> on_surface<D>(const Particles<D>&, const PairList&);                              \
-  template void add_spurious_forces<D>(const Particles<D>&, const std::vector<bool>&, const Field&, double,    \
-                                       double, Health&);                                                       \
-  template void add_neighbourhoods<D>(const Particles<D>&, const PairList&, const std::vector<bool>&, Health&);
+#define TAUT_INSTANTIATE(D)                                                                                 \
+  template HealthMeasure measure_at<D>(const Particles<D>&, std::string, double, double, std::string,       \
+                                       Index);                                                              \
+  template std::vector<bool> on_surface<D>(const Particles<D>&, const PairList&);                           \
+  template void add_spurious_forces<D>(const Particles<D>&, const std::vector<bool>&, const Field&, double, \
+                                       double, Health&);                                                    \
+  template void add_neighbourhoods<D>(const Particles<D>&, const PairList&, const std::vector<bool>&,       \
+                                      Health&);
 TAUT_INSTANTIATE(1)
 TAUT_INSTANTIATE(2)
 TAUT_INSTANTIATE(3)

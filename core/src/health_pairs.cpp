@@ -18,15 +18,16 @@ Field moduli(const Particles<D>& p) {
   return E;
 }
 
-/// How much more than in a soft body the same roughness costs where volume hardly changes: what locks is the part of
-/// it that would change volume (nu 0.49 in plane strain: 2.6).
+/// How much more than in a soft body the same roughness costs where volume hardly changes: what locks is the
+/// part of it that would change volume (nu 0.49 in plane strain: 2.6).
 template <int D>
 double locking(const Material<D>& material) {
   const double modulus = material.density() * material.wave_speed() * material.wave_speed();
   return 1 + 0.1 * std::max(0.0, modulus / material.parameters().E - 1);
 }
 
-/// Largest |sum_b X_ab (x) G_ab M_a^T - I| of a slice's particles: what the operator makes of any linear field.
+/// Largest |sum_b X_ab (x) G_ab M_a^T - I| of a slice's particles: what the operator makes of any linear
+/// field.
 template <int D, class Payload>
 Pack linear_field_error(Index s, const PairList& pairs, const Payload& payload, const Columns<D>& X,
                         const PairOperator<D>& op) {
@@ -43,7 +44,8 @@ Pack linear_field_error(Index s, const PairList& pairs, const Payload& payload, 
 }  // namespace
 
 template <int D>
-void check_pair_operator(const Particles<D>& p, const PairList& pairs, const PairOperator<D>& op, Health& health) {
+void check_pair_operator(const Particles<D>& p, const PairList& pairs, const PairOperator<D>& op,
+                         Health& health) {
   Field stress(static_cast<std::size_t>(p.total), D * D), force(static_cast<std::size_t>(p.total), D);
   Field error(static_cast<std::size_t>(p.n), 1);
   const Index slices = (p.n + lanes - 1) / lanes;
@@ -65,10 +67,10 @@ void check_pair_operator(const Particles<D>& p, const PairList& pairs, const Pai
       for (int d = 0; d < D; ++d) store(force.component(d) + s * lanes, f[d]);
     }
   });
-  const auto worst = static_cast<Index>(
-      std::max_element(error.component(0), error.component(0) + p.n) - error.component(0));
-  health.measures.push_back(measure_at(p, "health_linear_field_error", std::sqrt(error.component(0)[worst]), 1e-3,
-                                       "largest error of the gradient of a linear field", worst));
+  const auto worst =
+      static_cast<Index>(std::max_element(error.component(0), error.component(0) + p.n) - error.component(0));
+  health.measures.push_back(measure_at(p, "health_linear_field_error", std::sqrt(error.component(0)[worst]),
+                                       1e-3, "largest error of the gradient of a linear field", worst));
   const std::vector<bool> surface = on_surface(p, pairs);
   add_spurious_forces(p, surface, force, 0.05, 0.1, health);
   add_neighbourhoods(p, pairs, surface, health);
@@ -160,8 +162,9 @@ MotionSample pair_motion(const Particles<D>& p, const PairList& pairs, const Pai
   return sample;
 }
 
-#define TAUT_INSTANTIATE(D)                                                                                    \
-  template void check_pair_operator<D>(const Particles<D>&, const PairList&, const PairOperator<D>&, Health&); \
+#define TAUT_INSTANTIATE(D)                                                                          \
+  template void check_pair_operator<D>(const Particles<D>&, const PairList&, const PairOperator<D>&, \
+                                       Health&);                                                     \
   template MotionSample pair_motion<D>(const Particles<D>&, const PairList&, const PairOperator<D>&);
 TAUT_INSTANTIATE(1)
 TAUT_INSTANTIATE(2)

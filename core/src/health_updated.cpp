@@ -6,14 +6,16 @@
 namespace taut {
 
 template <int D>
-void check_updated_operator(const Particles<D>& p, const PairList& pairs, const KernelTable& table, Health& health) {
+void check_updated_operator(const Particles<D>& p, const PairList& pairs, const KernelTable& table,
+                            Health& health) {
   Field force(static_cast<std::size_t>(p.n), D);
   for (Index a = 0; a < p.n; ++a) {
     Vec<D> sum = Vec<D>::Zero();
     const Vec<D> X = p.X.template vec<D>(static_cast<std::size_t>(a));
     pairs.for_each(a, [&](Index b, std::int64_t, int) {
       const Vec<D> X_ab = p.X.template vec<D>(static_cast<std::size_t>(b)) - X;
-      sum -= 2 * p.V.component(0)[a] * p.V.component(0)[b] * table.slope_over_r(pack(X_ab.squaredNorm()))[0] * X_ab;
+      sum -= 2 * p.V.component(0)[a] * p.V.component(0)[b] * table.slope_over_r(pack(X_ab.squaredNorm()))[0] *
+             X_ab;
     });
     force.template set_vec<D>(static_cast<std::size_t>(a), sum);
   }
@@ -24,7 +26,8 @@ void check_updated_operator(const Particles<D>& p, const PairList& pairs, const 
 }
 
 template <int D>
-MotionSample updated_motion(const Particles<D>& p, const std::vector<std::array<Index, 2>>& touching, const Field& rho) {
+MotionSample updated_motion(const Particles<D>& p, const std::vector<std::array<Index, 2>>& touching,
+                            const Field& rho) {
   MotionSample sample;
   const auto n = static_cast<std::size_t>(p.n);
   const auto X = [&](Index i) { return p.X.template vec<D>(static_cast<std::size_t>(i)); };
@@ -83,9 +86,11 @@ MotionSample updated_motion(const Particles<D>& p, const std::vector<std::array<
   return sample;
 }
 
-#define TAUT_INSTANTIATE(D)                                                                                   \
-  template void check_updated_operator<D>(const Particles<D>&, const PairList&, const KernelTable&, Health&); \
-  template MotionSample updated_motion<D>(const Particles<D>&, const std::vector<std::array<Index, 2>>&, const Field&);
+#define TAUT_INSTANTIATE(D)                                                                              \
+  template void check_updated_operator<D>(const Particles<D>&, const PairList&, const KernelTable&,      \
+                                          Health&);                                                      \
+  template MotionSample updated_motion<D>(const Particles<D>&, const std::vector<std::array<Index, 2>>&, \
+                                          const Field&);
 TAUT_INSTANTIATE(1)
 TAUT_INSTANTIATE(2)
 TAUT_INSTANTIATE(3)

@@ -85,8 +85,8 @@ void HealthWatch<D>::look() {
   if (!now.known) return;
   const auto up = [](double& to, double value) { to = std::max(to, value); };
   up(worst_.rough, now.rough);
-  // Moving bodies have as much energy in their motion; those that spin or fly may have next to none in strains,
-  // so that any wave would count. The sums are twice the energy.
+  // Moving bodies have as much energy in their motion; those that spin or fly may have next to none in
+  // strains, so that any wave would count. The sums are twice the energy.
   up(worst_.strain, std::max(now.strain, 2 * own_motion(s_.particles)));
   up(worst_.mean, now.mean);
   up(worst_.density, now.density);
@@ -102,50 +102,61 @@ void HealthWatch<D>::add_motion(Health& health) const {
   const Particles<D>& p = s_.particles;
   // Below the round-off of positions there is nothing rough.
   double extent = 0;
-  for (const double x : {p.x.component(0)[0], p.x.component(0)[p.n - 1]}) extent = std::max(extent, std::abs(x));
+  for (const double x : {p.x.component(0)[0], p.x.component(0)[p.n - 1]})
+    extent = std::max(extent, std::abs(x));
   const bool noise = worst_.mean < 1e-13 * (1 + extent / p.dx);
   const double roughness = noise ? 0 : worst_.rough / worst_.strain;
-  health.measures.push_back(measure_at(p, "health_roughness", roughness, s_.formulation->rough_limit(),
-                                       "energy of the motion of neighbours that gradients do not see, over the strain energy",
-                                       worst_.worst_at));
-  health.measures.push_back(measure_at(p, "health_nonaffine_max", worst_.worst, told_only,
-                                       "largest motion between neighbours that gradients do not see, over their distance",
-                                       worst_.worst_at));
-  health.measures.push_back(measure_at(p, "health_nonaffine_mean", worst_.mean, told_only, "the same, root mean square", no_particle));
+  health.measures.push_back(
+      measure_at(p, "health_roughness", roughness, s_.formulation->rough_limit(),
+                 "energy of the motion of neighbours that gradients do not see, over the strain energy",
+                 worst_.worst_at));
+  health.measures.push_back(measure_at(
+      p, "health_nonaffine_max", worst_.worst, told_only,
+      "largest motion between neighbours that gradients do not see, over their distance", worst_.worst_at));
+  health.measures.push_back(measure_at(p, "health_nonaffine_mean", worst_.mean, told_only,
+                                       "the same, root mean square", no_particle));
   if (worst_.interface >= 0 && !noise)
-    health.measures.push_back(measure_at(p, "health_interface", worst_.interface / worst_.strain, 0.07,
-                                         "strain energy of particles next to a material of another stiffness, over all",
-                                         no_particle));
+    health.measures.push_back(measure_at(
+        p, "health_interface", worst_.interface / worst_.strain, 0.07,
+        "strain energy of particles next to a material of another stiffness, over all", no_particle));
   if (worst_.density >= 0)
-    health.measures.push_back(measure_at(p, "health_density_error", worst_.density, 0.02,
-                                         "volume from the density over that from the positions, less one (rms)", no_particle));
+    health.measures.push_back(
+        measure_at(p, "health_density_error", worst_.density, 0.02,
+                   "volume from the density over that from the positions, less one (rms)", no_particle));
   if (worst_.gap >= 0)
     health.measures.push_back(measure_at(p, "health_gap", worst_.gap, 1.5,
-                                         "largest distance of particles that touched, over what it was", worst_.gap_at));
+                                         "largest distance of particles that touched, over what it was",
+                                         worst_.gap_at));
 }
 
 template <int D>
 void HealthWatch<D>::add_balances(Health& health) const {
   if (!conserves_) return;
   const HealthBalance<D> now = HealthBalance<D>::of(s_), &then = s_.balance;
-  const double scale = std::max({now.kinetic, then.kinetic, now.strain, then.strain, std::abs(now.load), std::abs(then.load)});
+  const double scale =
+      std::max({now.kinetic, then.kinetic, now.strain, then.strain, std::abs(now.load), std::abs(then.load)});
   if (scale > 0) {
     const double change = now.total() - then.total();
     // Forms without a stored energy start without stress: what they keep is what is missing.
-    health.measures.push_back(measure_at(s_.particles, "health_energy_error",
-                                         (now.has_strain ? std::abs(change) : std::max(0.0, change)) / scale, 0.05,
-                                         now.has_strain ? "change of kinetic, strain and load energy together, over the largest"
-                                                        : "kinetic energy that comes from nowhere, over the largest energy",
-                                         no_particle));
+    health.measures.push_back(
+        measure_at(s_.particles, "health_energy_error",
+                   (now.has_strain ? std::abs(change) : std::max(0.0, change)) / scale, 0.05,
+                   now.has_strain ? "change of kinetic, strain and load energy together, over the largest"
+                                  : "kinetic energy that comes from nowhere, over the largest energy",
+                   no_particle));
   }
   if (!free_) return;
   if (const double size = std::max(now.absolute, then.absolute); size > 0)
-    health.measures.push_back(measure_at(s_.particles, "health_momentum_error", (now.momentum - then.momentum).norm() / size, 1e-3,
-                                         "change of momentum of a free body, over the sum of all sizes", no_particle));
+    health.measures.push_back(
+        measure_at(s_.particles, "health_momentum_error", (now.momentum - then.momentum).norm() / size, 1e-3,
+                   "change of momentum of a free body, over the sum of all sizes", no_particle));
   if (const double size = std::max(now.absolute_angular, then.absolute_angular); D > 1 && size > 0)
-    health.measures.push_back(measure_at(s_.particles, "health_spin_error", std::hypot(now.angular[0] - then.angular[0], now.angular[1] - then.angular[1],
-                                                    now.angular[2] - then.angular[2]) / size, 1e-2,
-                                         "change of angular momentum of a free body, over the sum of all sizes", no_particle));
+    health.measures.push_back(measure_at(
+        s_.particles, "health_spin_error",
+        std::hypot(now.angular[0] - then.angular[0], now.angular[1] - then.angular[1],
+                   now.angular[2] - then.angular[2]) /
+            size,
+        1e-2, "change of angular momentum of a free body, over the sum of all sizes", no_particle));
 }
 
 template <int D>

@@ -21,7 +21,8 @@ Simulation<2> square(const Method& method, double jitter = 0, const char* materi
 
 }  // namespace
 
-TEST_CASE("a measure is flagged beyond its limit, below it where it counts from below, and when it is no number") {
+TEST_CASE(
+    "a measure is flagged beyond its limit, below it where it counts from below, and when it is no number") {
   HealthMeasure m{"health_x", 0.2, 0.1, false, "", -1, {}};
   CHECK(m.flagged());
   m.from_below = true;
@@ -60,7 +61,8 @@ TEST_CASE("health at set-up: a lattice is well, a jittered one is not unless clo
   closed.operators = "compatible";
   Simulation<2> compatible = square(closed, 0.2);
   compatible.prepare();
-  CHECK(value(compatible.health(), "health_spurious_force") < 0.1 * value(jittered.health(), "health_spurious_force"));
+  CHECK(value(compatible.health(), "health_spurious_force") <
+        0.1 * value(jittered.health(), "health_spurious_force"));
   CHECK(!compatible.health().suspect());
 }
 
@@ -91,8 +93,8 @@ TEST_CASE("health at set-up: operators that are sick are refused with the partic
 }
 
 TEST_CASE("health of a run: what neighbours do and gradients do not see") {
-  // A rigid motion and a homogeneous deformation are seen whole; the mode that changes sign from particle to particle is
-  // not seen at all.
+  // A rigid motion and a homogeneous deformation are seen whole; the mode that changes sign from particle to
+  // particle is not seen at all.
   const auto rough = [](const Method& method, const std::function<Vec<2>(const Vec<2>&)>& u) {
     Simulation<2> s = square(method);
     s.set_displacement(u);

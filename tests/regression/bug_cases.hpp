@@ -1,6 +1,6 @@
 #pragma once
-// Cases from public reports of people who use such codes, with truths: formulas, or quadratic finite elements.
-// Their names and numbers are those of the collection that they come from.
+// Cases from public reports of people who use such codes, with truths: formulas, or quadratic finite
+// elements. Their names and numbers are those of the collection that they come from.
 
 #include <array>
 #include <cmath>
@@ -14,9 +14,9 @@ namespace taut::bug_cases {
 
 /// What one method made of one case.
 struct Answer {
-  double error = 0;     ///< relative, the worst of what the case measures; meaningless unless `finished`
-  bool finished = true; ///< neither broke nor failed to converge
-  std::string refused;  ///< why set-up refused
+  double error = 0;      ///< relative, the worst of what the case measures; meaningless unless `finished`
+  bool finished = true;  ///< neither broke nor failed to converge
+  std::string refused;   ///< why set-up refused
   RunResult result;
   bool suspect() const { return !refused.empty() || !finished || result.suspect(); }
 };
@@ -77,7 +77,8 @@ inline const std::vector<Named>& in_rates() {
 inline bool rates(const Method& m) { return m.formulation.starts_with("ul_"); }
 
 template <int D>
-std::shared_ptr<const Material<D>> law(const Method& m, const char* hyperelastic, MaterialParameters parameters) {
+std::shared_ptr<const Material<D>> law(const Method& m, const char* hyperelastic,
+                                       MaterialParameters parameters) {
   return make_material<D>(rates(m) ? "hypoelastic" : hyperelastic, parameters);
 }
 
@@ -96,8 +97,8 @@ Answer answer(Build&& build, Solve&& solve) {
   return a;
 }
 
-/// 06: a cantilever strip 0.1 x 0.005 m, `cells` through its thickness, nu 0.49: tip 7.6739e-5 m (beam; FEM within
-/// 0.03 %).
+/// 06: a cantilever strip 0.1 x 0.005 m, `cells` through its thickness, nu 0.49: tip 7.6739e-5 m (beam; FEM
+/// within 0.03 %).
 inline Answer thin(const Method& m, int cells, Lattice lattice = Lattice::node_centred) {
   constexpr double H = 0.005;
   const bool centred = lattice == Lattice::cell_centred;
@@ -105,8 +106,10 @@ inline Answer thin(const Method& m, int cells, Lattice lattice = Lattice::node_c
       [&] {
         LatticeOptions o{.dx = H / cells, .lattice = lattice, .cells = !centred};
         if (centred) o.layers[0] = {3, 0};
-        Simulation<2> s(make_cloud(box<2>({0, 0}, {0.1, H}), o),
-                        law<2>(m, "linear_elastic", {.E = 4.17e6, .nu = 0.49, .density = 1600, .plane = Plane::stress}), m);
+        Simulation<2> s(
+            make_cloud(box<2>({0, 0}, {0.1, H}), o),
+            law<2>(m, "linear_elastic", {.E = 4.17e6, .nu = 0.49, .density = 1600, .plane = Plane::stress}),
+            m);
         if (centred)
           s.clamp([](const Vec<2>& X) { return X[0] < 0; });
         else
@@ -125,8 +128,9 @@ inline Answer thin(const Method& m, int cells, Lattice lattice = Lattice::node_c
 inline Answer modulus(const Method& m, double dx, double jitter = 0) {
   return answer(
       [&] {
-        Simulation<2> s(make_cloud(box<2>({0, 0}, {0.2, 0.05}), {.dx = dx, .jitter = jitter, .cells = true}),
-                        law<2>(m, "linear_elastic", {.E = 1e9, .nu = 0.3, .density = 1000, .plane = Plane::stress}), m);
+        Simulation<2> s(
+            make_cloud(box<2>({0, 0}, {0.2, 0.05}), {.dx = dx, .jitter = jitter, .cells = true}),
+            law<2>(m, "linear_elastic", {.E = 1e9, .nu = 0.3, .density = 1000, .plane = Plane::stress}), m);
         s.roller(s.face("x_min"), 0);
         s.roller(s.face("y_min"), 1);
         s.load(s.face("x_max"), {5e4, 0});
@@ -172,8 +176,10 @@ inline Answer series(const Method& m, double dx) {
         const MaterialParameters soft{.E = 1e6, .nu = 0, .density = 1000, .plane = Plane::stress};
         MaterialParameters stiff = soft;
         stiff.E = 1e8;
-        Simulation<2> s(make_cloud(box<2>({0, 0}, {0.2, 0.04}), {.dx = dx, .cells = true}), law<2>(m, "linear_elastic", soft), m);
-        s.set_material([](const Vec<2>& X) { return X.x() < 0.1 + 1e-9; }, law<2>(m, "linear_elastic", stiff));
+        Simulation<2> s(make_cloud(box<2>({0, 0}, {0.2, 0.04}), {.dx = dx, .cells = true}),
+                        law<2>(m, "linear_elastic", soft), m);
+        s.set_material([](const Vec<2>& X) { return X.x() < 0.1 + 1e-9; },
+                       law<2>(m, "linear_elastic", stiff));
         s.roller(s.face("x_min"), 0);
         s.roller(s.face("y_min"), 1);
         s.load(s.face("x_max"), {40, 0});
@@ -186,13 +192,15 @@ inline Answer series(const Method& m, double dx) {
       });
 }
 
-/// 29: a strip rolled up by its end over `turns`, its length and the time scaled with them: energy E I theta^2 / (2 L).
+/// 29: a strip rolled up by its end over `turns`, its length and the time scaled with them: energy E I
+/// theta^2 / (2 L).
 inline Answer roll_up(const Method& m, double turns, double L = 1, int cells = 4) {
   const double H = .02, E = 1e7, T = 3 * L, end = 2 * std::numbers::pi * turns;
   return answer(
       [&] {
-        Simulation<2> s(make_cloud(box<2>({0, -H / 2}, {L, H / 2}), {.dx = H / cells, .cells = true}),
-                        law<2>(m, "st_venant_kirchhoff", {.E = E, .nu = 0, .density = 1000, .plane = Plane::stress}), m);
+        Simulation<2> s(
+            make_cloud(box<2>({0, -H / 2}, {L, H / 2}), {.dx = H / cells, .cells = true}),
+            law<2>(m, "st_venant_kirchhoff", {.E = E, .nu = 0, .density = 1000, .plane = Plane::stress}), m);
         const auto centre = [=](double th) {
           return th < 1e-9 ? Vec<2>(L, 0) : Vec<2>(L * std::sin(th) / th, L * (1 - std::cos(th)) / th);
         };
@@ -261,7 +269,8 @@ inline Cloud<2> cook_cloud(int n, bool areas) {
       if (b != a) least = std::min(least, (c.X[a] - c.X[b]).norm());
     nearest.push_back(least);
   }
-  std::nth_element(nearest.begin(), nearest.begin() + static_cast<std::ptrdiff_t>(nearest.size() / 2), nearest.end());
+  std::nth_element(nearest.begin(), nearest.begin() + static_cast<std::ptrdiff_t>(nearest.size() / 2),
+                   nearest.end());
   c.dx = nearest[nearest.size() / 2];
   return c;
 }
@@ -269,8 +278,9 @@ inline Answer cook(Method m, int n, bool areas) {
   m.support_dx = 2.6;
   return answer(
       [&] {
-        Simulation<2> s(cook_cloud(n, areas),
-                        law<2>(m, "linear_elastic", {.E = 1, .nu = 1.0 / 3, .density = 1, .plane = Plane::stress}), m);
+        Simulation<2> s(
+            cook_cloud(n, areas),
+            law<2>(m, "linear_elastic", {.E = 1, .nu = 1.0 / 3, .density = 1, .plane = Plane::stress}), m);
         s.clamp(s.face("x_min"));
         s.load(s.face("x_max"), {0, 1});
         return s;
@@ -282,8 +292,8 @@ inline Answer cook(Method m, int n, bool areas) {
       });
 }
 
-/// 37: element centroids of a bar as a cloud with volumes, pulled by 1000 Pa at E 1 MPa: strain 1e-3 between the first
-/// and the last column.
+/// 37: element centroids of a bar as a cloud with volumes, pulled by 1000 Pa at E 1 MPa: strain 1e-3 between
+/// the first and the last column.
 template <int D>
 Answer centroids(const Method& m, std::array<int, D> cells) {
   Cloud<D> c;
@@ -302,8 +312,10 @@ Answer centroids(const Method& m, std::array<int, D> cells) {
   }
   return answer(
       [&] {
-        Simulation<D> s(c, law<D>(m, "linear_elastic", {.E = 1e6, .nu = 0, .density = 1000, .plane = Plane::stress}), m);
-        for (int d = 0; d < D; ++d) s.roller(s.face(std::array{"x_min", "y_min", "z_min"}[static_cast<std::size_t>(d)]), d);
+        Simulation<D> s(
+            c, law<D>(m, "linear_elastic", {.E = 1e6, .nu = 0, .density = 1000, .plane = Plane::stress}), m);
+        for (int d = 0; d < D; ++d)
+          s.roller(s.face(std::array{"x_min", "y_min", "z_min"}[static_cast<std::size_t>(d)]), d);
         Vec<D> force = Vec<D>::Zero();
         force[0] = 1000.0 * all / cells[0];
         s.load(s.face("x_max"), force);
@@ -322,8 +334,10 @@ Answer centroids(const Method& m, std::array<int, D> cells) {
 inline Answer cantilever(const Method& m, double dx, double jitter = 0) {
   return answer(
       [&] {
-        Simulation<2> s(make_cloud(box<2>({0, 0}, {0.2, 0.02}), {.dx = dx, .jitter = jitter, .cells = true}),
-                        law<2>(m, "st_venant_kirchhoff", {.E = 20e6, .nu = 0, .density = 1000, .plane = Plane::stress}), m);
+        Simulation<2> s(
+            make_cloud(box<2>({0, 0}, {0.2, 0.02}), {.dx = dx, .jitter = jitter, .cells = true}),
+            law<2>(m, "st_venant_kirchhoff", {.E = 20e6, .nu = 0, .density = 1000, .plane = Plane::stress}),
+            m);
         s.clamp(s.face("x_min"));
         s.load(s.face("x_max"), {0, -250});
         return s;
@@ -340,7 +354,9 @@ inline Answer locking(const Method& m, double dx) {
   return answer(
       [&] {
         Simulation<2> s(make_cloud(box<2>({0, 0}, {0.2, 0.02}), {.dx = dx, .cells = true}),
-                        law<2>(m, "st_venant_kirchhoff", {.E = 20e6, .nu = 0.49, .density = 1000, .plane = Plane::strain}), m);
+                        law<2>(m, "st_venant_kirchhoff",
+                               {.E = 20e6, .nu = 0.49, .density = 1000, .plane = Plane::strain}),
+                        m);
         s.clamp(s.face("x_min"));
         s.load(s.face("x_max"), {0, -250});
         return s;
@@ -364,8 +380,8 @@ inline Answer solid(const Method& m, double dx) {
       },
       [](Simulation<3>& s, double& error) {
         const RunResult r = s.relax({.tolerance = 1e-4, .max_steps = 60000});
-        // Beam of Timoshenko, shear coefficient 5/6: F L^3 / (3 E I) + F L / (5/6 G A), both small against the locking that
-        // is looked for.
+        // Beam of Timoshenko, shear coefficient 5/6: F L^3 / (3 E I) + F L / (5/6 G A), both small against
+        // the locking that is looked for.
         const double I = 0.05 * 0.001 / 12, G = 1e9 / 2.98;
         error = s.displacement_at({1, 0.05, 0.025}).y() / -(50 / (3e9 * I) + 50 / (5.0 / 6 * G * 0.005)) - 1;
         return r;

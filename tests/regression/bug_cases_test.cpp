@@ -1,11 +1,11 @@
-// Cases from public reports, each with its truth, at small size. What is marked may_fail was wrong when the case came
-// and is to be mended; the mark goes with the fault.
+// Cases from public reports, each with its truth, at small size. What is marked may_fail was wrong when the
+// case came and is to be mended; the mark goes with the fault.
+#include "bug_cases.hpp"
+
 #include <doctest/doctest.h>
 
 #include <filesystem>
 #include <fstream>
-
-#include "bug_cases.hpp"
 
 using namespace taut;
 using namespace taut::bug_cases;
@@ -27,7 +27,9 @@ Answer far_off(const Method& m, const Vec<2>& at) {
   return answer(
       [&] {
         Simulation<2> s(make_cloud(box<2>(at, at + Vec<2>(0.2, 0.05)), {.dx = 0.01, .cells = true}),
-                        make_material<2>("linear_elastic", {.E = 210e9, .nu = 0.3, .density = 7850, .plane = Plane::stress}), m);
+                        make_material<2>("linear_elastic",
+                                         {.E = 210e9, .nu = 0.3, .density = 7850, .plane = Plane::stress}),
+                        m);
         s.roller(s.face("x_min"), 0);
         s.roller(s.face("y_min"), 1);
         s.load(s.face("x_max"), {1e6, 0});
@@ -45,7 +47,8 @@ Answer far_off(const Method& m, const Vec<2>& at) {
 TEST_CASE("bug case 03: results do not depend on where the body lies: origin") {
   for (const Method& m : {Method{}, stress_points()}) CHECK(off(far_off(m, {0, 0})) < 1e-3);
 }
-TEST_CASE("bug case 03: results do not depend on where the body lies: map coordinates" * doctest::may_fail()) {
+TEST_CASE("bug case 03: results do not depend on where the body lies: map coordinates" *
+          doctest::may_fail()) {
   for (const Method& m : {Method{}, stress_points()}) CHECK(off(far_off(m, {5e5, 5.4e6})) < 1e-3);
 }
 
@@ -103,7 +106,9 @@ TEST_CASE("bug case 10: updated forms that do not are flagged") {
   }
 }
 
-TEST_CASE("bug case 11: bars in series: stress points are exact") { CHECK(off(series(stress_points(), 0.02)) < 1e-4); }
+TEST_CASE("bug case 11: bars in series: stress points are exact") {
+  CHECK(off(series(stress_points(), 0.02)) < 1e-4);
+}
 TEST_CASE("bug case 11: bars in series: forms on pairs are exact" * doctest::may_fail()) {
   for (const Named& m : on_pairs()) CHECK(off(series(m.method, 0.02)) < 1e-4);
 }
@@ -132,8 +137,9 @@ TEST_CASE("bug case 29: rolling up, a fifth of the turn: stress points") {
 }
 
 TEST_CASE("bug case 32: a loaded body that nobody holds is found at set-up" * doctest::may_fail()) {
-  Simulation<2> s(make_cloud(box<2>({0, 0}, {0.2, 0.05}), {.dx = 0.0125}),
-                  make_material<2>("neo_hookean", {.E = 2e6, .nu = 0.3, .density = 1000, .plane = Plane::stress}), {});
+  Simulation<2> s(
+      make_cloud(box<2>({0, 0}, {0.2, 0.05}), {.dx = 0.0125}),
+      make_material<2>("neo_hookean", {.E = 2e6, .nu = 0.3, .density = 1000, .plane = Plane::stress}), {});
   s.load(s.face("x_max"), {1000, 0});
   CHECK_THROWS_AS(s.relax({.max_steps = 100}), InputError);
 }

@@ -23,22 +23,26 @@ inline constexpr double told_only = std::numeric_limits<double>::infinity();
 
 /// A measure that is flagged above `limit`; `at` is an internal index, or -1.
 template <int D>
-HealthMeasure measure_at(const Particles<D>& p, std::string name, double value, double limit, std::string meaning, Index at);
+HealthMeasure measure_at(const Particles<D>& p, std::string name, double value, double limit,
+                         std::string meaning, Index at);
 
 // Of the forms on pairs in the reference configuration: two sweeps.
 /// Linear exactness, spurious force of a constant stress inside and on faces, fewest neighbours, thickness.
 template <int D>
-void check_pair_operator(const Particles<D>& p, const PairList& pairs, const PairOperator<D>& op, Health& health);
+void check_pair_operator(const Particles<D>& p, const PairList& pairs, const PairOperator<D>& op,
+                         Health& health);
 template <int D>
 MotionSample pair_motion(const Particles<D>& p, const PairList& pairs, const PairOperator<D>& op);
 
 // Of the updated forms.
 /// Spurious force of a constant stress: sum_b V_a V_b 2 grad W_ab, and fewest neighbours.
 template <int D>
-void check_updated_operator(const Particles<D>& p, const PairList& pairs, const KernelTable& table, Health& health);
+void check_updated_operator(const Particles<D>& p, const PairList& pairs, const KernelTable& table,
+                            Health& health);
 /// `touching`: pairs that were adjacent at rest; `rho`: present densities, one value a particle.
 template <int D>
-MotionSample updated_motion(const Particles<D>& p, const std::vector<std::array<Index, 2>>& touching, const Field& rho);
+MotionSample updated_motion(const Particles<D>& p, const std::vector<std::array<Index, 2>>& touching,
+                            const Field& rho);
 
 // What the sweeps above have in common.
 /// Which particles have nothing next to them on one side: where areas are known those with some, else those
@@ -47,11 +51,12 @@ template <int D>
 std::vector<bool> on_surface(const Particles<D>& p, const PairList& pairs);
 /// Forces of a unit stress: those inside, and what those on faces leave of B where that is known.
 template <int D>
-void add_spurious_forces(const Particles<D>& p, const std::vector<bool>& surface, const Field& force, double limit_inside,
-                         double limit_faces, Health& health);
+void add_spurious_forces(const Particles<D>& p, const std::vector<bool>& surface, const Field& force,
+                         double limit_inside, double limit_faces, Health& health);
 /// Fewest neighbours, and the fewest particles across.
 template <int D>
-void add_neighbourhoods(const Particles<D>& p, const PairList& pairs, const std::vector<bool>& surface, Health& health);
+void add_neighbourhoods(const Particles<D>& p, const PairList& pairs, const std::vector<bool>& surface,
+                        Health& health);
 
 /// Energies and momenta of a state; those of the planes' other side left out.
 template <int D>
