@@ -126,9 +126,9 @@ bool worth_repeating(const Choice& c) {
   return c.row.status != "skipped" && std::accumulate(c.loop_s.begin(), c.loop_s.end(), 0.0) < long_s;
 }
 
-/// Size of the error; nothing for a run that broke or was skipped.
+/// Size of the error, of suspect runs too: that is what is studied. Nothing for a run that broke or was skipped.
 std::optional<double> error_size(const Row& row) {
-  if (row.status != "ok" || !row.error || !std::isfinite(*row.error)) return {};
+  if (row.status == "broke" || row.status == "skipped" || !row.error || !std::isfinite(*row.error)) return {};
   return std::abs(*row.error);
 }
 

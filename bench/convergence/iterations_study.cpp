@@ -93,7 +93,7 @@ Section study_iterations(const StudyOptions& options) {
       Row tip = result.rows(options.common.threads).at(0);
       tip.scene = "cantilever_jittered";
       add(tip, tip.quantity,
-          tip.status == "ok" && tip.error ? std::optional(std::abs(*tip.error)) : std::nullopt);
+          tip.status != "broke" && tip.error ? std::optional(std::abs(*tip.error)) : std::nullopt);
     }
     progress.end(fmt::format("cube {}, cantilever {} (support 1.5 dx)", cells[1].text, cells[2].text));
     table.rows.push_back(std::move(cells));

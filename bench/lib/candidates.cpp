@@ -98,7 +98,7 @@ double snapped(double dx, double edge) { return edge / std::ceil(edge / dx * (1 
 std::optional<Prediction> spacing_for(const std::vector<Sample>& s, double tolerance, double edge) {
   // The coarsest sample from which on all are good.
   std::size_t good = s.size();
-  while (good > 0 && *s[good - 1].error <= tolerance) --good;
+  while (good > 0 && *s[good - 1].error <= tolerance && !s[good - 1].suspect()) --good;
   Prediction p;
   if (good == 0) return Prediction{s[0].dx, *s[0].error, 0, {}};
   const bool between = good < s.size();
@@ -128,6 +128,10 @@ double seconds_at(const std::vector<Sample>& s, double dx, int dimension) {
 }
 
 }  // namespace
+
+bool Sample::suspect() const {
+  return std::any_of(cases.begin(), cases.end(), [](const CaseResult& c) { return c.suspect(); });
+}
 
 double Sample::loop_s() const {
   double sum = 0;
@@ -267,6 +271,13 @@ void predict(Candidate& candidate, double tolerance, double edge, double finest,
   const std::vector<Sample>& s = candidate.samples;
   if (s.empty() || std::any_of(s.begin(), s.end(), [](const Sample& x) { return !x.error; })) {
     candidate.out = "no truth to judge it by";
+    return;
+  }
+  // Pilots may be too coarse to be trusted; the last one tells what refinement leads to.
+  if (s.back().suspect()) {
+    const auto of = std::find_if(s.back().cases.begin(), s.back().cases.end(), [](const CaseResult& c) { return c.suspect(); });
+    candidate.out = fmt::format("suspect{}: {}", s.back().dx > 0 ? fmt::format(" at dx {:.3g} mm", s.back().dx * 1e3) : "",
+                                of->health.complaints());
     return;
   }
   std::optional<Prediction> p;

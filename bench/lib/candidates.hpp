@@ -19,6 +19,7 @@ struct Sample {
   bool verification = false;
   std::optional<double> error;  ///< largest over points and probes; set by `judge`
 
+  bool suspect() const;    ///< any of them
   double seconds() const;  ///< set-up and loops
   double loop_s() const;
   double work() const;   ///< sum of steps × pairs

@@ -136,6 +136,7 @@ void record(CaseResult& result, const RunResult& run, const RunSpec& spec, int d
   result.steps = run.steps;
   result.time = run.time;
   result.loop_s = run.loop_seconds;
+  result.health = run.health;
   if (run.status == Status::ok) return;
   result.broke = true;
   if (run.breakdown) {
@@ -306,7 +307,7 @@ std::string describe(const SweepPoint& point) {
 
 std::vector<Row> CaseResult::rows(int threads) const {
   std::vector<Row> rows;
-  for (const ProbeSpec& probe : scene->probes) {
+  const auto row_of = [&](const std::string& quantity) {
     Row row;
     row.scene = scene->name;
     set_method(row, run->method);
@@ -314,17 +315,12 @@ std::vector<Row> CaseResult::rows(int threads) const {
     if (dx > 0) row.dx = dx;
     row.integrator = run->solve.mode == "relax" ? "relax" : run->solve.integrator;
     row.threads = threads;
-    row.quantity = probe.name;
+    row.quantity = quantity;
     for (const auto& [name, value] : point)
       if (name != "dx") row.quantity += '_' + name + '_' + snake_number(value);
-    row.unit = probe.unit();
-    const auto found =
-        std::find_if(measured.begin(), measured.end(), [&](const Measured& m) { return m.probe == &probe; });
-    if (found == measured.end()) {
-      row.status = "skipped";
-      rows.push_back(std::move(row));
-      continue;
-    }
+    return row;
+  };
+  const auto add_costs = [&](Row& row) {
     row.particles = particles;
     row.pairs = pairs;
     row.steps = steps;
@@ -333,6 +329,18 @@ std::vector<Row> CaseResult::rows(int threads) const {
     row.loop_s = loop_s;
     if (loop_s > 0) row.particle_steps_per_s = rate();
     if (particles > 0) row.bytes_per_particle = bytes / static_cast<double>(particles);
+  };
+  for (const ProbeSpec& probe : scene->probes) {
+    Row row = row_of(probe.name);
+    row.unit = probe.unit();
+    const auto found =
+        std::find_if(measured.begin(), measured.end(), [&](const Measured& m) { return m.probe == &probe; });
+    if (found == measured.end()) {
+      row.status = "skipped";
+      rows.push_back(std::move(row));
+      continue;
+    }
+    add_costs(row);
     if (broke) {
       row.status = "broke";
       row.value = broke_time;
@@ -340,12 +348,21 @@ std::vector<Row> CaseResult::rows(int threads) const {
     } else if (!found->value) {
       row.status = "broke";
     } else {
+      if (suspect()) row.status = "suspect";
       row.value = found->value;
       row.reference = found->reference;
       if (probe.measure == "curve_error") row.error = row.value;
       if (row.value && row.reference)
         row.error = error_of(*row.value, *row.reference, probe.measure == "arrival_time");
     }
+    rows.push_back(std::move(row));
+  }
+  for (const HealthMeasure& m : health.measures) {
+    Row row = row_of(m.name);
+    add_costs(row);
+    row.value = m.value;
+    row.unit = "1";
+    if (m.flagged()) row.status = "suspect";
     rows.push_back(std::move(row));
   }
   return rows;

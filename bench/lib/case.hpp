@@ -44,12 +44,16 @@ struct CaseResult {
   std::string where;      ///< broke: particle and its way, where one is to blame
   double broke_time = 0;  ///< [s]
   std::vector<Measured> measured;
+  Health health;
   std::optional<Snapshot> snapshot;
 
   double rate() const {
     return loop_s > 0 ? static_cast<double>(particles) * static_cast<double>(steps) / loop_s : 0;
   }
-  /// Rows of results.csv, one a probe; probes that this case does not take are marked skipped.
+  /// It finished, but a measure of its health is beyond its limit.
+  bool suspect() const { return !broke && health.suspect(); }
+  /// Rows of results.csv, one a probe, then one a measure of health; probes that this case does not take are
+  /// marked skipped.
   std::vector<Row> rows(int threads) const;
 };
 

@@ -64,8 +64,9 @@ std::string outcome(const CaseResult& result) {
     if (m.reference && *m.reference != 0)
       text += fmt::format(" ({:+.2f} %)", 100 * error_of(*m.value, *m.reference, false));
   }
-  return fmt::format("{}; {} steps, {:.2f} s, {:.2f} M particle-steps/s", text.empty() ? "done" : text,
-                     result.steps, result.loop_s, result.rate() * 1e-6);
+  const std::string warning = result.suspect() ? "; SUSPECT: " + result.health.complaints() : "";
+  return fmt::format("{}; {} steps, {:.2f} s, {:.2f} M particle-steps/s{}", text.empty() ? "done" : text,
+                     result.steps, result.loop_s, result.rate() * 1e-6, warning);
 }
 
 void write_histories(const CaseResult& result, const std::filesystem::path& file) {

@@ -21,7 +21,7 @@ table { border-collapse: collapse; font-size: .84rem; }
 th, td { padding: .32rem .7rem .32rem 0; text-align: left; vertical-align: top; border-bottom: 1px solid #e6eaee; white-space: nowrap; }
 th { font-weight: 600; color: #444d56; border-bottom: 1.5px solid #aeb6be; white-space: normal; vertical-align: bottom; }
 td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; }
-td.good { color: #1e7b45; font-weight: 600; } td.bad { color: #b3261e; font-weight: 600; } td.quiet { color: #7a848d; }
+td.good { color: #1e7b45; font-weight: 600; } td.bad { color: #b3261e; font-weight: 600; } td.quiet { color: #7a848d; } td.fair { color: #9a6700; }
 td.number.good, td.number.bad { font-weight: 400; }
 td.wrap { white-space: normal; min-width: 7.5rem; }
 td.wide { white-space: normal; min-width: 22rem; }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <lib/files.hpp>
+#include <lib/health_table.hpp>
 #include <lib/html.hpp>
 #include <lib/names.hpp>
 #include <lib/picture.hpp>
@@ -45,7 +46,7 @@ std::vector<Group> groups_of(const SceneReport& part) {
 }
 
 struct Summary {
-  std::size_t broke = 0;
+  std::size_t broke = 0, suspect = 0;
   double loop_s = 0, particle_steps = 0;
   std::optional<double> worst;
   std::optional<double> rms;
@@ -55,6 +56,7 @@ Summary summarise(const Group& group) {
   Summary s;
   for (const CaseResult* c : group.cases) {
     s.broke += c->broke;
+    s.suspect += c->suspect();
     s.loop_s += c->loop_s;
     s.particle_steps += static_cast<double>(c->particles) * static_cast<double>(c->steps);
     for (const Measured& m : c->measured)
@@ -75,13 +77,13 @@ std::string verdict(const SceneReport& part) {
   for (const Group& group : groups) {
     const Summary s = summarise(group);
     any_truth = any_truth || s.worst;
-    if (s.broke || !s.worst || std::abs(*s.worst) > wanted) continue;
+    if (s.broke || s.suspect || !s.worst || std::abs(*s.worst) > wanted) continue;
     if (!best || s.loop_s < best_time) best = &group, best_time = s.loop_s;
   }
   if (!any_truth) return "The scene names no truth to compare with.";
-  if (!best) return fmt::format("No run finishes every case within {:g} % of the truth.", wanted * 100);
+  if (!best) return fmt::format("No run that is not suspect finishes every case within {:g} % of the truth.", wanted * 100);
   return fmt::format(
-      "Cheapest run that finishes every case within {:g} % of the truth: {} at dx {:g} mm, {} in its time "
+      "Cheapest run that finishes every case within {:g} % of the truth, none of them suspect: {} at dx {:g} mm, {} in its time "
       "loops.",
       wanted * 100, best->run->label, best->dx * 1e3, duration(best_time));
 }
@@ -98,8 +100,10 @@ void write_runs(HtmlPage& page, const SceneReport& part) {
         part.scene->geometry.type == "csv" ? "from file" : name_of(group.run->lattice.kind);
     rows.push_back(
         {{group.run->label, run_colour(static_cast<int>(group.run - part.scene->runs.data()))},
-         {s.broke ? fmt::format("{} of {} broke", s.broke, total) : fmt::format("all {} finished", total),
-          s.broke ? "bad" : "good"},
+         {s.broke     ? fmt::format("{} of {} broke", s.broke, total)
+          : s.suspect ? fmt::format("{} of {} suspect", s.suspect, total)
+                      : fmt::format("all {} finished", total),
+          s.broke || s.suspect ? "bad" : "good"},
          {s.rms ? fmt::format("{:.2f} %", 100 * *s.rms) : "–", "number"},
          {s.worst ? percent(*s.worst) : "–", "number"},
          {duration(s.loop_s), "number"},
@@ -267,7 +271,7 @@ void write_cases(const Report& report, const std::filesystem::path& out) {
           fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", part.scene->name,
                       quoted(c.run->label), c.run->method.formulation, name_of(c.run->lattice.kind),
                       c.run->lattice.jitter, c.dx, value("load"), value("nu"), value("region_density"),
-                      c.broke ? "broke" : "ok", c.broke ? fmt::format("{}", c.broke_time) : "",
+                      c.broke ? "broke" : c.suspect() ? "suspect" : "ok", c.broke ? fmt::format("{}", c.broke_time) : "",
                       quoted(c.what + (c.where.empty() ? "" : "; " + c.where)), c.steps, c.time, c.loop_s);
     }
   write_file(out / "cases.csv", text);
@@ -307,6 +311,7 @@ std::vector<std::string> write_report(const Report& report, const std::filesyste
     page.paragraph(verdict(part), "lead");
     write_pictures(page, part, out, missing);
     write_runs(page, part);
+    write_health(page, part);
     write_automatic(page, part);
     write_charts(page, part, out, missing);
     write_broken(page, part);

@@ -22,7 +22,7 @@ struct Row {
   std::string quantity;
   std::optional<double> value, reference, error;
   std::string unit;
-  std::string status = "ok";  ///< ok, broke (value = time of failure [s]), skipped
+  std::string status = "ok";  ///< ok, suspect (a health_ row says why), broke (value = time of failure [s]), skipped
   std::optional<double> setup_s, loop_s, particle_steps_per_s, bytes_per_particle;
 };
 

@@ -105,12 +105,15 @@ void run_pilots(ToleranceResult& r, ProgressLine& progress) {
 
 /// The sample nearest to the tolerance: what a message can offer where none meets it.
 void find_nearest(ToleranceResult& r) {
-  for (std::size_t i = 0; i < r.candidates.size(); ++i)
-    for (const Sample& s : r.candidates[i].samples)
-      if (s.error && (!r.best || *s.error < *r.best->error)) {
-        r.best = &s;
-        r.chosen = static_cast<int>(i);
-      }
+  for (const bool suspects : {false, true}) {  // these only where there is nothing else
+    if (r.best) return;
+    for (std::size_t i = 0; i < r.candidates.size(); ++i)
+      for (const Sample& s : r.candidates[i].samples)
+        if (s.error && s.suspect() == suspects && (!r.best || *s.error < *r.best->error)) {
+          r.best = &s;
+          r.chosen = static_cast<int>(i);
+        }
+  }
 }
 
 void verify(ToleranceResult& r, double edge, double finest, ProgressLine& progress) {
@@ -134,13 +137,14 @@ void verify(ToleranceResult& r, double edge, double finest, ProgressLine& progre
                                    [&](const Sample& s) { return s.verification && s.dx == promised.dx; });
     progress.end(fmt::format("error {:.3g} %, {:.3g} s; predicted {:.3g} % and {:.3g} s", 100 * *done->error,
                              done->seconds(), 100 * promised.error, promised.seconds));
-    if (*done->error <= r.tolerance) {
+    if (*done->error <= r.tolerance && !done->suspect()) {
       r.met = true;
       r.chosen = static_cast<int>(c - r.candidates.data());
       r.best = &*done;
       r.promised = promised;
     } else if (again) {
-      c->out = fmt::format("misses: {:.3g} % on verification", 100 * *done->error);
+      c->out = done->suspect() ? std::string("suspect on verification")
+                               : fmt::format("misses: {:.3g} % on verification", 100 * *done->error);
     } else {
       predict(*c, r.tolerance, edge, finest, r.scene->dimension);
     }
@@ -197,14 +201,15 @@ std::string ToleranceResult::verdict() const {
 std::vector<Row> ToleranceResult::rows(int threads) const {
   std::vector<Row> all;
   const auto add = [&](const CaseResult& result, const std::string& prefix) {
-    std::vector<Row> rows = result.rows(threads);  // one a probe
+    std::vector<Row> rows = result.rows(threads);  // one a probe first
     SweepPoint point = result.point;
     point.erase("dx");
     for (std::size_t i = 0; i < rows.size(); ++i) {
       Row& row = rows[i];
       if (row.status == "skipped") continue;
-      const auto truth = truths.of.find({&scene->probes[i], point});
-      if (row.status == "ok" && row.value && truth != truths.of.end() && truth->second.votes > 0) {
+      const bool of_probe = i < scene->probes.size();  // the others are of health
+      const auto truth = of_probe ? truths.of.find({&scene->probes[i], point}) : truths.of.end();
+      if (row.status != "broke" && row.value && truth != truths.of.end() && truth->second.votes > 0) {
         row.reference = truth->second.value;
         row.error = error_of(*row.value, *row.reference, false);
       }

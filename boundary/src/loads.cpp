@@ -42,6 +42,36 @@ void Loads<D>::add_to(double t, const Field& mass, Field& a) const {
 }
 
 template <int D>
+bool Loads<D>::constant() const {
+  if (ramp_) return false;
+  for (const Point& load : point_)
+    if (load.history) return false;
+  for (const Body& load : body_)
+    if (load.history) return false;
+  return true;
+}
+
+template <int D>
+double Loads<D>::work(double t, const Field& mass, const Field& u) const {
+  double sum = 0;
+  for (const Point& load : point_) {
+    double of_load = 0;
+    for (std::size_t k = 0; k < load.particles.size(); ++k) {
+      const auto i = static_cast<std::size_t>(load.particles[k]);
+      of_load += load.forces[k].dot(u.template vec<D>(i));
+    }
+    sum += factor(load.history, t) * of_load;
+  }
+  for (const Body& load : body_) {
+    double of_load = 0;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(load.n); ++i)
+      of_load += mass.component(0)[i] * load.acceleration.dot(u.template vec<D>(i));
+    sum += factor(load.history, t) * of_load;
+  }
+  return sum;
+}
+
+template <int D>
 double Loads<D>::norm(double t, const Field& mass) const {
   double sum = 0;
   for (const Point& load : point_) {

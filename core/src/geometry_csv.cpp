@@ -184,6 +184,7 @@ void complete(Cloud<D>& cloud, double dx, const Lines& lines) {
   if (cloud.V.empty()) {
     try {
       find_volumes(cloud);
+      cloud.guessed_volumes = true;
     } catch (const InputError& e) {
       lines.fail_whole(fmt::format("there is no column volume, and from the points alone: {}", e.what()));
     }

@@ -10,6 +10,7 @@
 #include <taut/internal/local_origin.hpp>
 #include <taut/internal/occupancy.hpp>
 #include <taut/internal/powers.hpp>
+#include <taut/internal/shape_volume.hpp>
 
 namespace taut {
 namespace {
@@ -359,6 +360,7 @@ Cloud<D> make_cloud(const Shape<D>& shape, const LatticeOptions& options) {
   Cloud<D> cloud;
   cloud.dx = divides ? options.dx : edge_of<D>(grid.cell_volume);
   cloud.origin = grid.origin;
+  cloud.body_volume = estimate_volume(shape, (shape.max() - shape.min()).prod() / grid.cell_volume);
   cloud.X.resize(n);
   cloud.V.resize(n);
   if (nodes) cloud.B.resize(n);

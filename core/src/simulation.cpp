@@ -412,6 +412,7 @@ void Simulation<D>::prepare() {
                     "number. Check the material, spacing and volumes (and their units), zero_energy_control, and "
                     "whether particles have neighbours at all",
                     step));
+  s.health = s.health_of_setup = setup_health<D>(s, *formulation);
   s.formulation = std::move(formulation);
   if (s.initial_velocity)
     for (Index i = 0; i < s.particles.n; ++i)
@@ -511,6 +512,11 @@ Vec<D> Simulation<D>::velocity(std::size_t id) const {
   prepared(*impl_);
   impl_->look();
   return impl_->particles.v.template vec<D>(impl_->place(id));
+}
+template <int D>
+const Health& Simulation<D>::health() const {
+  prepared(*impl_);
+  return impl_->health;
 }
 template <int D>
 Mat<D> Simulation<D>::cauchy_stress(std::size_t id) const {

@@ -23,7 +23,7 @@ void start(SimulationImpl<D>& s) {
 template <int D>
 class Loop {
  public:
-  explicit Loop(SimulationImpl<D>& simulation) : s_(simulation) { start(s_); }
+  Loop(SimulationImpl<D>& simulation, bool undamped) : s_(simulation), watch_((start(s_), s_), undamped) {}
 
   RunResult result;
 
@@ -38,18 +38,21 @@ class Loop {
   void stepped(double t) {
     s_.time = t;
     if (++result.steps % inspect_every == 0) s_.formulation->inspect();
+    watch_.stepped(result.steps);
   }
   /// Asks every now and then whether to go on.
   bool stopped(const Progress& progress, double fraction) const {
     return progress && result.steps % inspect_every == 0 && !progress(result.steps, s_.time, fraction);
   }
-  RunResult finish();
+  /// `at_rest`: the run was on its way to a state of rest, and that alone counts.
+  RunResult finish(bool at_rest);
 
  private:
   // Steps between the checks that cost a sweep over the particles.
   static constexpr std::int64_t inspect_every = 32;
 
   SimulationImpl<D>& s_;
+  HealthWatch<D> watch_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
@@ -75,11 +78,12 @@ bool Loop<D>::intact() {
 }
 
 template <int D>
-RunResult Loop<D>::finish() {
-  intact();
+RunResult Loop<D>::finish(bool at_rest) {
+  const bool broke = !intact();
   result.time = s_.time;
   result.rebuilds = s_.formulation->rebuilds();
   result.loop_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  s_.health = result.health = watch_.finish(at_rest, broke);
   return result;
 }
 
@@ -161,7 +165,7 @@ template <int D>
 RunResult integrate(SimulationImpl<D>& s, Integrator& integrator, double duration,
                     const RunOptions& options) {
   const double end = s.time + duration;
-  Loop<D> loop(s);
+  Loop<D> loop(s, true);
   const CompletingVelocities completing(s, integrator);
   notify(s);
   while (s.time < end && loop.intact()) {
@@ -182,7 +186,7 @@ RunResult integrate(SimulationImpl<D>& s, Integrator& integrator, double duratio
       break;
   }
   s.look();
-  return loop.finish();
+  return loop.finish(false);
 }
 
 template <int D>
@@ -193,7 +197,7 @@ RunResult find_equilibrium(SimulationImpl<D>& s, const RelaxOptions& options) {
       const double q = std::clamp((t - start) / T, 0.0, 1.0);
       return q * q * (3 - 2 * q);
     });
-  Loop<D> loop(s);
+  Loop<D> loop(s, false);
   RunResult& result = loop.result;
   result.status = Status::not_converged;
   const auto undamped = make_integrator("leapfrog");
@@ -240,7 +244,7 @@ RunResult find_equilibrium(SimulationImpl<D>& s, const RelaxOptions& options) {
       break;
     }
   }
-  return loop.finish();
+  return loop.finish(true);
 }
 
 #define TAUT_INSTANTIATE(D)                                                                    \

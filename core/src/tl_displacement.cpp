@@ -34,6 +34,7 @@ class TlDisplacement final : public TotalLagrangian<D> {
 
   void update_accelerations(double) override;
   double strain_energy() const override;
+  double rough_limit() const override { return taut::rough_limit(this->method_.operators); }
   std::size_t bytes() const override { return Base::bytes() + (control_ ? control_->bytes() : 0); }
 
  private:
@@ -233,7 +234,7 @@ double TlDisplacement<D>::stiffest_mode(const LawsAtRest& laws) {
     });
     p_.tie(p_.a);
   };
-  const double eigenvalue = largest_eigenvalue<D>(p_.n, p_.total, p_.m, p_.a, apply);
+  const double eigenvalue = largest_eigenvalue<D>(p_.n, p_.total, p_.m, p_.a, apply, &this->stiffest_);
   std::fill(p_.a.flat().begin(), p_.a.flat().end(), 0.0);
   return eigenvalue;
 }

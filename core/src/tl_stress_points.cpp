@@ -62,6 +62,8 @@ class TlStressPoints final : public HyperelasticForm<D> {
   void visit_stresses(const std::function<void(const StressSample<D>&)>& f) const override;
   /// That of the hourglass modes included.
   double strain_energy() const override;
+  MotionSample motion() const override;
+  double rough_limit() const override { return 0.1; }
 
   std::vector<Index> bodies() const override {
     DisjointSets sets(p_.n);
@@ -107,6 +109,7 @@ class TlStressPoints final : public HyperelasticForm<D> {
   void share_out();
   double stiffest_mode(const LawsAtRest& laws);
 
+  double control_ = 1;
   std::vector<double> stiffness_;  // of the first hourglass mode, over sum |b_m|^2 / V, of each material
   CellStrips<D> cells_;
   std::vector<std::vector<Visit>> parts_;  // one a thread
@@ -116,7 +119,7 @@ class TlStressPoints final : public HyperelasticForm<D> {
 
 template <int D>
 TlStressPoints<D>::TlStressPoints(const FormulationSetup<D>& setup) : Base(setup) {
-  const double control = setup.method.zero_energy_control.value_or(1);
+  const double control = control_ = setup.method.zero_energy_control.value_or(1);
   for (const auto* material : materials_) {
     const MaterialParameters& m = material->parameters();
     const double bending = D == 2 && m.plane == Plane::strain ? m.E / (1 - m.nu * m.nu) : m.E;
@@ -316,6 +319,52 @@ double TlStressPoints<D>::strain_energy() const {
   return total;
 }
 
+// Hourglass modes bend cells, and with unit control they have the energy that they should: only what the
+// control adds to it or leaves out is rough.
+template <int D>
+MotionSample TlStressPoints<D>::motion() const {
+  MotionSample sample;
+  sample.known = true;
+  const Columns<D> u(p_.u);
+  double squares = 0, volume = 0;
+  for (const Strip& s : cells_.strips()) {
+    const double E = materials_[s.material]->parameters().E;
+    for (Index j = 0; j < s.count; j += lanes)
+      with_cells(s, j, [&](const auto& cells) {
+        Pack modes[D][cell_corners<D>], H[D * D];
+        Bends<D> bends;
+        load_modes<D>(s, j, u, modes);
+        cells.deform(modes, H, bends);
+        Pack bent = pack(0), strain = pack(0);
+        for (int m = 0; m < bends.count; ++m)
+          for (int d = 0; d < D; ++d) bent += bends.q[m][d] * bends.q[m][d];
+        for (int d = 0; d < D; ++d)
+          for (int e = 0; e < D; ++e) {
+            Pack G = H[d * D + e] + H[e * D + d];  // twice Green's strain
+            for (int k = 0; k < D; ++k) G += H[k * D + d] * H[k * D + e];
+            strain += 0.25 * G * G;
+          }
+        // Twice the energy under unit control over E is 1 / (3 D) sum |b_m|^2 / V q^2.
+        const Pack rough = cells.stiffness() * bent / (3.0 * D), V = cells.volume();
+        const Pack part = share(s, j);
+        for (int l = 0; l < std::min<Index>(lanes, s.count - j); ++l) {
+          sample.rough += std::abs(1 - control_) * E * part[l] * rough[l];
+          sample.strain += E * part[l] * (V[l] * strain[l] + rough[l]);
+          // Amplitude of a corner's motion over the edge of the cell.
+          const double relative = std::sqrt(bent[l]) / cell_corners<D> / std::pow(V[l], 1.0 / D);
+          squares += part[l] * V[l] * relative * relative;
+          volume += part[l] * V[l];
+          if (relative > sample.worst) {
+            sample.worst = relative;
+            sample.worst_at = s.row[0] + j + l;
+          }
+        }
+      });
+  }
+  sample.mean = std::sqrt(squares / volume);
+  return sample;
+}
+
 template <int D>
 template <class Cells, class F>
 void TlStressPoints<D>::with_stresses(const Strip& s, Index j, const Cells& cells, Index count, F&& f) const {
@@ -393,7 +442,7 @@ double TlStressPoints<D>::stiffest_mode(const LawsAtRest& laws) {
   };
   Field mass(static_cast<std::size_t>(p_.n), 1);
   for (Index i = 0; i < p_.n; ++i) mass.component(0)[i] = 1 / per_mass_.component(0)[i];
-  const double eigenvalue = largest_eigenvalue<D>(p_.n, p_.n, mass, p_.a, apply);
+  const double eigenvalue = largest_eigenvalue<D>(p_.n, p_.n, mass, p_.a, apply, &this->stiffest_);
   std::fill(p_.a.flat().begin(), p_.a.flat().end(), 0.0);
   return eigenvalue;
 }

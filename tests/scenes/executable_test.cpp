@@ -38,6 +38,13 @@ std::vector<std::string> lines_of(const fs::path& file) {
   return lines;
 }
 
+/// Those of results.csv that are of probes, and the header.
+std::vector<std::string> probe_rows(const fs::path& file) {
+  std::vector<std::string> lines = lines_of(file);
+  std::erase_if(lines, [](const std::string& line) { return line.find(",health_") != std::string::npos; });
+  return lines;
+}
+
 }  // namespace
 
 TEST_CASE("every malformed scene ends with exit code 2, a message and no files") {
@@ -94,16 +101,22 @@ TEST_CASE("a run writes everything it promises") {
   CAPTURE(outcome.err);
   REQUIRE(outcome.status == 0);
   CHECK(outcome.out.find("[1/1] small, total: tip_ux = ") != std::string::npos);
-  const auto rows = lines_of(folder() / "result/results.csv");
+  const auto rows = probe_rows(folder() / "result/results.csv");
   REQUIRE(rows.size() == 2);
   CHECK(
       rows[1].starts_with("small,tl_displacement,corrected,st_venant_kirchhoff,wendland_c2,1.5,0.0125,85,"));
   CHECK(rows[1].find(",tip_ux,0.001") !=
         std::string::npos);  // 1000 N / (E H) L = 2 mm, less the clamp's constraint
   CHECK(rows[1].find(",m,ok,") != std::string::npos);
+  const auto all = lines_of(folder() / "result/results.csv");
+  CHECK(all[1] == rows[1]);  // health comes behind the probes
+  CHECK(std::any_of(all.begin(), all.end(), [](const std::string& line) {
+    return line.find(",health_roughness,") != std::string::npos && line.find(",1,ok,") != std::string::npos;
+  }));
   const std::string report = read_file(folder() / "result/report.html");
   CHECK(report.starts_with("<!doctype html>"));
   CHECK(report.find("tip_ux") != std::string::npos);
+  CHECK(report.find("Health: can these runs be trusted?") != std::string::npos);
   // Self-contained: nothing is loaded from elsewhere.
   CHECK(report.find("http") == std::string::npos);
   CHECK(report.find("src=\"/") == std::string::npos);
@@ -178,7 +191,7 @@ formulation = "tl_displacement"
   const Outcome outcome = compare("breaks.toml --out broken --no-fields");
   CAPTURE(outcome.err);
   REQUIRE(outcome.status == 0);
-  const auto rows = lines_of(folder() / "broken/results.csv");
+  const auto rows = probe_rows(folder() / "broken/results.csv");
   REQUIRE(rows.size() == 4);
   CHECK(rows[1].find(",ok,") != std::string::npos);
   CHECK(rows[2].find(",s,broke,") != std::string::npos);
@@ -187,6 +200,24 @@ formulation = "tl_displacement"
   CHECK(outcome.out.find("particle") != std::string::npos);
   const std::string report = read_file(folder() / "broken/report.html");
   CHECK(report.find("Which broke, and when") != std::string::npos);
+}
+
+TEST_CASE("a run that is not to be trusted is suspect, and says why") {
+  std::string text = taut::test::good_scene;
+  // One cell across.
+  text.replace(text.find("max = [0.2, 0.05]"), 17, "max = [0.2, 0.0125]");
+  text.replace(text.find("at = [0.2, 0.025]"), 17, "at = [0.2, 0.0125]");
+  text.replace(text.find("force = 1000.0"), 14, "force = 0.01");
+  text.replace(text.find("direction = [1.0, 0.0]"), 22, "direction = [0.0, 1.0]");
+  write("suspect.toml", text);
+  const Outcome outcome = compare("suspect.toml --out suspect --no-fields");
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.status == 0);
+  CHECK(outcome.out.find("SUSPECT: health_roughness") != std::string::npos);
+  const auto rows = probe_rows(folder() / "suspect/results.csv");
+  REQUIRE(rows.size() == 2);
+  CHECK(rows[1].find(",m,suspect,") != std::string::npos);
+  CHECK(read_file(folder() / "suspect/report.html").find("1 of 1 suspect") != std::string::npos);
 }
 
 TEST_CASE("an output folder that cannot be made fails the run") {

@@ -5,6 +5,7 @@
 #include <taut/core/derived.hpp>
 #include <taut/core/error.hpp>
 #include <taut/core/geometry.hpp>
+#include <taut/core/health.hpp>
 #include <taut/core/kernel.hpp>
 #include <taut/core/method.hpp>
 #include <taut/core/simulation.hpp>

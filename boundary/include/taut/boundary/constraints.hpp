@@ -48,6 +48,15 @@ class Constraints {
     for (int d = 0; d < D; ++d)
       held_[static_cast<std::size_t>(d)].for_each([&](const BoundPoint<D>& point, const Displacement&) { f(point, d); });
   }
+  /// Whether any displacement is prescribed: constraints that are fixed do no work.
+  bool moving() const {
+    for (const Set& set : sets_)
+      if (set.displacement) return true;
+    bool any = false;
+    for (const auto& held : held_)
+      held.for_each([&](const BoundPoint<D>&, const Displacement& follow) { any = any || follow; });
+    return any;
+  }
 
  private:
   struct Set {

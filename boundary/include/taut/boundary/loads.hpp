@@ -27,6 +27,10 @@ class Loads {
   /// Euclidean norm over all particles of the applied forces [N].
   double norm(double t, const Field& mass) const;
   bool empty() const { return point_.empty() && body_.empty(); }
+  /// Whether the loads are the same at all times, so that they have a potential.
+  bool constant() const;
+  /// Work [J] that the loads of time t do over the displacements u.
+  double work(double t, const Field& mass, const Field& u) const;
 
  private:
   struct Point {

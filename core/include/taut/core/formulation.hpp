@@ -3,6 +3,7 @@
 /// What a formulation is to the rest of taut, and the registry of formulations.
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -10,6 +11,7 @@
 #include <string_view>
 #include <taut/boundary/constraints.hpp>
 #include <taut/boundary/loads.hpp>
+#include <taut/core/health.hpp>
 #include <taut/core/method.hpp>
 #include <taut/core/particles.hpp>
 #include <taut/integrators/dynamics.hpp>
@@ -79,6 +81,18 @@ class Formulation : public Dynamics {
   /// For each particle the number of the body that it is part of: those that internal forces bind. One for
   /// all unless a form knows better.
   virtual std::vector<Index> bodies() const { return std::vector<Index>(static_cast<std::size_t>(p_.n), 0); }
+  // Health: what the formulation can tell about itself.
+  /// Adds the measures of set-up, of the reference configuration.
+  virtual void check(Health&) const {}
+  /// How rough the present motion is, for what the formulation sees of it; in about the time of a step.
+  virtual MotionSample motion() const { return {}; }
+  /// Roughness (energy of what gradients do not see over strain energy) up to which its answers are good.
+  virtual double rough_limit() const { return std::numeric_limits<double>::infinity(); }
+  /// Highest frequency of the body at rest [rad/s], and the particle that moves most in that mode; 0 where
+  /// the step comes from elsewhere.
+  virtual double frequency() const { return 0; }
+  virtual Index stiffest() const { return no_particle; }
+
   virtual std::int64_t pairs() const = 0;
   virtual std::int64_t rebuilds() const { return 0; }
   virtual std::size_t bytes() const = 0;

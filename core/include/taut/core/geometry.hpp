@@ -76,21 +76,19 @@ struct Cloud {
   std::vector<std::array<Index, 1 << D>> cells;
   std::vector<double> cell_share;  ///< part of each cell that is body, 0 … 1; empty where all are whole
   double dx = 0;  ///< nominal spacing [m]
-<<<<<<< HEAD
   std::vector<double> spacing;  ///< of each particle [m], for supports that grow with it; empty where all have dx
   /// What X and the centres of facets are relative to [m]. Coordinates far from their origin (maps) have too
   /// few digits left for spacings and displacements, so that bodies there get one of their own.
   Vec<D> origin = Vec<D>::Zero();
-  /// The lattice that `make_cloud` filled, which tells what lies between particles and where materials meet.
-=======
   /// The lattice that `make_cloud` filled, which tells total Lagrangian forms what lies between particles and
   /// where materials meet. Without it the boundary does, where areas are given: particles within the support
   /// are no neighbours if the way from one to the other leaves the body (n . X > 0.85 |X| with n the direction
   /// of its area vector, or 0.4 |X| at both). Without either all within the support are.
->>>>>>> w-interfaces
   /// Null for other clouds. Holds while particles are moved, but not where they are added, removed or
   /// reordered: such a cloud counts as one without a lattice.
   std::shared_ptr<const Occupancy<D>> body;
+  double body_volume = 0;  ///< that of the shape, added layers left out [m^D]; 0 where unknown
+  bool guessed_volumes = false;  ///< V follows from the points alone
   std::size_t size() const { return X.size(); }
 };
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <taut/core/geometry.hpp>
+#include <taut/core/health.hpp>
 #include <taut/core/method.hpp>
 #include <taut/core/types.hpp>
 #include <taut/materials/material.hpp>
@@ -38,6 +39,10 @@ struct RunResult {
   double residual = 0;        ///< relax: |out-of-balance force| / |applied force| at the end
   double remaining_motion = 0;  ///< relax: what the slowest motion has still to go over what it has come
   std::int64_t rebuilds = 0;  ///< updated Lagrangian: pair list rebuilds
+  Health health;              ///< what the run tells of its own trustworthiness
+
+  /// Whether a measure of `health` is beyond its limit: the answer may be wrong, whatever the status.
+  bool suspect() const { return health.suspect(); }
 };
 
 /// Progress of a running loop: steps done, simulated time, fraction done (0..1; an estimate for relax).
@@ -166,6 +171,9 @@ class Simulation {
   std::int64_t pairs() const;  ///< directed pairs
   std::size_t bytes() const;   ///< memory of state, pair lists and operators
   double setup_seconds() const;
+  /// Measures of set-up after `prepare`, those of the last `run` or `relax` behind them. \throws InputError
+  /// before.
+  const Health& health() const;
   const Method& method() const;
 
  private:

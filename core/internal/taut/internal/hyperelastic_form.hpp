@@ -52,6 +52,8 @@ class HyperelasticForm : public Formulation<D> {
                               material->wave_speed());
     return 2 / (frequency_ * ratio);
   }
+  double frequency() const override { return frequency_; }
+  Index stiffest() const override { return stiffest_; }
 
  protected:
   void fail_inverted(Index particle) {
@@ -71,6 +73,7 @@ class HyperelasticForm : public Formulation<D> {
   std::vector<const Hyperelastic<D>*> materials_;
   StretchBounds stretch_;
   double frequency_ = 0;  ///< of the stiffest mode of the body at rest [rad/s], or a bound
+  Index stiffest_ = no_particle;  ///< particle that moves most in it
 };
 
 }  // namespace taut

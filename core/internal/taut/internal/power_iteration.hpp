@@ -14,9 +14,11 @@ namespace taut {
 
 /// Largest eigenvalue of M^-1 K by power iteration, with K symmetric and positive. `apply(y)` may complete y
 /// (D components, zero beyond the n particles at first) and leaves M^-1 K y in `a`; `m` are the masses. Sums
-/// are made block by block: the same bits whatever the threads.
+/// are made block by block: the same bits whatever the threads. `stiffest`: which particle moves most in that
+/// mode.
 template <int D, class Apply>
-double largest_eigenvalue(Index n, Index total, const Field& m, Field& a, Apply&& apply) {
+double largest_eigenvalue(Index n, Index total, const Field& m, Field& a, Apply&& apply,
+                          Index* stiffest = nullptr) {
   constexpr int iterations = 30;
   constexpr Index block = 512;  // slices
   Field y(static_cast<std::size_t>(total), D);
@@ -73,6 +75,13 @@ double largest_eigenvalue(Index n, Index total, const Field& m, Field& a, Apply&
       const double* from = a.component(d);
 #pragma omp parallel for simd schedule(static) if (n > parallel_from)
       for (Index i = 0; i < n; ++i) to[i] = from[i] * scale;
+    }
+  }
+  if (stiffest) {
+    double most = -1;
+    for (Index i = 0; i < n; ++i) {
+      const double y2 = y.template vec<D>(static_cast<std::size_t>(i)).squaredNorm();
+      if (y2 > most) most = y2, *stiffest = i;
     }
   }
   return eigenvalue;

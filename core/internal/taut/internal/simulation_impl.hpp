@@ -13,6 +13,7 @@
 #include <taut/integrators/step_control.hpp>
 #include <taut/internal/facet_rows.hpp>
 #include <taut/internal/interfaces.hpp>
+#include <taut/internal/health.hpp>
 #include <vector>
 
 namespace taut {
@@ -42,6 +43,8 @@ struct SimulationImpl {
   StepControl step_control;
   std::function<void()> complete_velocities;  // while a run leaves them at half steps
   double time = 0, setup_seconds = 0;
+  Health health_of_setup, health;  // the latter with that of the last run
+  HealthBalance<D> balance;        // at the start of runs that conserve energy
 
   // To be called before velocities are read.
   void look() const {

@@ -7,6 +7,7 @@
 #include <taut/core/operators.hpp>
 #include <taut/internal/assembly.hpp>
 #include <taut/internal/disjoint_sets.hpp>
+#include <taut/internal/health.hpp>
 #include <taut/internal/hyperelastic_form.hpp>
 #include <taut/internal/material_groups.hpp>
 #include <taut/internal/pair_passes.hpp>
@@ -61,6 +62,9 @@ class TotalLagrangian : public HyperelasticForm<D> {
         sets.join(p_.ties.particles[i - 1], p_.ties.particles[i]);
     return sets.numbers();
   }
+  void check(Health& health) const override { check_pair_operator<D>(p_, pairs_, op_, health); }
+  MotionSample motion() const override { return pair_motion<D>(p_, pairs_, op_); }
+
   std::int64_t pairs() const override { return pairs_.pairs(); }
   std::size_t bytes() const override {
     return pairs_.bytes() + op_.bytes() + Q_.bytes() + (p_.rule ? p_.rule->bytes() : 0);

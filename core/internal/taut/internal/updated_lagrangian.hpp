@@ -12,6 +12,7 @@
 #include <taut/core/formulation.hpp>
 #include <taut/core/kernel.hpp>
 #include <taut/internal/disjoint_sets.hpp>
+#include <taut/internal/health.hpp>
 #include <taut/internal/kernel_table.hpp>
 #include <taut/internal/material_groups.hpp>
 #include <taut/internal/simd.hpp>
@@ -77,6 +78,9 @@ class UpdatedLagrangian : public Formulation<D> {
       });
     return sets.numbers();
   }
+  void check(Health& health) const override { check_updated_operator<D>(p_, list_.pairs(), table_, health); }
+  MotionSample motion() const override { return updated_motion<D>(p_, nearest_, rho_); }
+  double rough_limit() const override { return 0.05; }
   std::int64_t pairs() const override { return list_.pairs().pairs(); }
   std::int64_t rebuilds() const override { return list_.builds() - 1; }
   std::size_t bytes() const override {
