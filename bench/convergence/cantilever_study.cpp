@@ -8,6 +8,7 @@
 #include <lib/names.hpp>
 #include <lib/progress.hpp>
 #include <lib/scene_loader.hpp>
+#include <taut/core/auto_method.hpp>
 #include <taut/core/error.hpp>
 
 namespace taut::bench {
@@ -17,7 +18,7 @@ constexpr double jitter = 0.15;
 
 /// A run of the scene, at its sweep's spacing `dx`.
 struct Job {
-  Method method;
+  Method method = with_defaults({});
   bool jittered = false;
   double dx = 0;
 };

@@ -2,6 +2,7 @@
 /// \file
 /// One run of the swinging cube, by a method of the library or by finite elements.
 
+#include <taut/core/auto_method.hpp>
 #include <convergence/swinging_cube.hpp>
 #include <lib/results.hpp>
 #include <optional>
@@ -10,7 +11,7 @@
 namespace taut::bench {
 
 struct CubeSpec {
-  Method method{};
+  Method method = with_defaults({});
   int intervals = 8;  ///< 1/h
   double jitter = 0;  ///< in spacings
   unsigned seed = 1;

@@ -1,3 +1,4 @@
+#include <taut/core/auto_method.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,7 +30,7 @@ std::vector<Method> methods() {
     for (const std::string& operators : names().operators) {
       if (updated(formulation) && operators != "standard" && operators != "corrected") continue;
       for (const double support_dx : {1.5, 2.4}) {
-        Method m;
+        Method m = with_defaults({});
         m.formulation = formulation;
         m.operators = operators;
         m.support_dx = support_dx;

@@ -13,6 +13,7 @@
 #include <lib/progress.hpp>
 #include <lib/scene_loader.hpp>
 #include <numeric>
+#include <taut/core/auto_method.hpp>
 #include <taut/core/error.hpp>
 
 namespace taut::bench {
@@ -30,7 +31,7 @@ struct Body {
 };
 
 struct Choice {
-  Method method;
+  Method method = with_defaults({});
   std::size_t level = 0;
   bool jittered = false;
   std::vector<double> loop_s;  ///< of the repeats
@@ -102,7 +103,7 @@ std::vector<Method> methods(bool quick) {
           const bool other_kernel = kernel != std::string("wendland_c2");
           const bool in_double = precision == PairPrecision::double_precision;
           if ((other_kernel && in_double) || (quick && (other_kernel || in_double))) continue;
-          Method m;
+          Method m = with_defaults({});
           m.operators = operators;
           m.support_dx = support_dx;
           m.kernel = kernel;

@@ -1,3 +1,4 @@
+#include <taut/core/auto_method.hpp>
 #include <fmt/format.h>
 
 #include <cmath>
@@ -67,7 +68,7 @@ Section study_iterations(const StudyOptions& options) {
       section.rows.push_back(std::move(row));
     };
     for (const double support_dx : {1.5, 2.4}) {
-      Method method;
+      Method method = with_defaults({});
       method.operators = "compatible";
       method.support_dx = support_dx;
       method.compatible_iterations = counts[k];

@@ -174,15 +174,9 @@ double shortest_edge(const Scene& scene) {
 namespace {
 
 template <int D>
-bool lies_inside(const Scene& scene) {
+bool file_lies_inside(const Scene& scene) {
   try {
-    const Cloud<D> cloud = read_cloud<D>(scene.geometry.file);
-    double depth = 0, total = 0;  // mean depth of the particles under their facets
-    for (const Facet<D>& f : cloud.facets) {
-      depth += (f.centre - cloud.X[static_cast<std::size_t>(f.owner)]).dot(f.area);
-      total += f.area.norm();
-    }
-    return depth > 0.15 * cloud.dx * total;
+    return lies_inside(read_cloud<D>(scene.geometry.file));
   } catch (const InputError&) {
     return false;  // said with its place when the cloud is built
   }
@@ -191,8 +185,8 @@ bool lies_inside(const Scene& scene) {
 }  // namespace
 
 bool has_centroids(const Scene& scene) {
-  if (scene.dimension == 1) return lies_inside<1>(scene);
-  return scene.dimension == 2 ? lies_inside<2>(scene) : lies_inside<3>(scene);
+  if (scene.dimension == 1) return file_lies_inside<1>(scene);
+  return scene.dimension == 2 ? file_lies_inside<2>(scene) : file_lies_inside<3>(scene);
 }
 
 template <int D>

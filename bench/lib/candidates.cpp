@@ -1,3 +1,4 @@
+#include <taut/core/auto_method.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -50,7 +51,7 @@ std::vector<Method> ladder(const AutoFacts& facts) {
   if (facts.rate_law) return methods;
   for (const char* operators : {"corrected", "compatible", "antisymmetric"})
     for (const char* kernel : {"wendland_c2", "quadratic"}) {
-      Method m;
+      Method m = with_defaults({});
       m.operators = operators;
       m.kernel = kernel;
       methods.push_back(m);

@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <taut/core/auto_method.hpp>
 #include <taut/core/geometry.hpp>
 #include <taut/core/method.hpp>
 #include <taut/materials/material.hpp>
@@ -134,15 +135,9 @@ struct ProbeSpec {
   std::string signal_unit() const;  ///< of what is sampled
 };
 
-/// What a rule of formulation = "auto" did; see auto_rules.hpp.
-struct FiredRule {
-  std::string sets;  ///< "operators = compatible"; empty: a remark
-  std::string when, why;
-};
-
 struct RunSpec {
   std::string label;
-  Method method;
+  Method method = with_defaults({});
   std::vector<FiredRule> automatic;  ///< how the method was chosen; empty unless formulation is "auto"
   LatticeSpec lattice;
   std::string material;  ///< model; empty: the scene's

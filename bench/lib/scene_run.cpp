@@ -8,7 +8,8 @@ namespace taut::bench {
 namespace {
 
 Method read_method(const TableReader& reader) {
-  Method m;
+  // A scene that names a formulation means the plain operators; `auto` fills in what it leaves open.
+  Method m = with_defaults({});
   std::vector<std::string> formulations = names().formulations;
   formulations.insert(formulations.begin(), "auto");
   m.formulation = reader.choice("formulation", formulations);

@@ -2,6 +2,7 @@
 #include <scaling/dense_steps.hpp>
 #include <scaling/engine_step.hpp>
 #include <scaling/job.hpp>
+#include <taut/core/auto_method.hpp>
 #include <taut/core/error.hpp>
 
 namespace taut::bench {
@@ -12,7 +13,7 @@ template <int D>
 void compare_with_dense(const Job& job, std::int64_t particles, double support_dx) {
   const Cloud<D> cloud = cube<D>(particles, Arrangement::lattice);
   const auto n = static_cast<double>(cloud.size());
-  Method method;
+  Method method = with_defaults({});
   method.operators = "standard";
   method.support_dx = support_dx;
   method.pair_precision = PairPrecision::double_precision;

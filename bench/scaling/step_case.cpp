@@ -1,3 +1,4 @@
+#include <taut/core/auto_method.hpp>
 #include <fstream>
 #include <scaling/peak_memory.hpp>
 #include <scaling/step_case.hpp>
@@ -32,7 +33,7 @@ EngineStep<D> set_up(std::int64_t particles, const StepSpec& spec, const Method&
 template <int D>
 Method StepCase<D>::method_of(const StepSpec& spec) {
   const Neighbourhood& hood = neighbourhood<D>(spec.neighbours, spec.arrangement);
-  Method method;
+  Method method = with_defaults({});
   method.formulation = spec.formulation;
   method.support_dx = hood.support_dx;
   method.skin = hood.skin;

@@ -35,9 +35,6 @@ void check(const LatticeOptions& o, int dimension) {
     throw InputError(fmt::format("make_cloud: jitter {} is not within 0 … 0.4", o.jitter));
   if (o.samples < 1 || o.samples > max_samples)
     throw InputError(fmt::format("make_cloud: samples {} is not within 1 … {}", o.samples, max_samples));
-  if (o.cells && o.lattice != Lattice::node_centred)
-    throw InputError(
-        "make_cloud: cells lie between the particles of node-centred lattices; this one is cell-centred");
   for (int d = 0; d < 3; ++d)
     for (const int layers : o.layers[static_cast<std::size_t>(d)]) {
       if (layers < 0)
@@ -408,7 +405,7 @@ Cloud<D> make_cloud(const Shape<D>& shape, const LatticeOptions& options) {
     }
   }
   if (!nodes) list_facets<D>(grid, fill, begin, full, cloud);
-  if (options.cells) list_cells<D>(grid, fill, sites, begin, full, cloud);
+  if (nodes && options.cells) list_cells<D>(grid, fill, sites, begin, full, cloud);
   cloud.body = std::move(body);
   return cloud;
 }

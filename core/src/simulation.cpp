@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <taut/core/auto_method.hpp>
 #include <taut/core/error.hpp>
 #include <taut/core/kernel.hpp>
 #include <taut/core/operators.hpp>
@@ -97,8 +98,9 @@ const Interfaces<D>* SimulationImpl<D>::met() const {
 template <int D>
 Simulation<D>::Simulation(Cloud<D> cloud, std::shared_ptr<const Material<D>> material, Method method)
     : impl_(std::make_unique<SimulationImpl<D>>()) {
-  check<D>(method);
   if (!material) throw InputError("a simulation needs a material");
+  method = complete(method, cloud, *material);
+  check<D>(method);
   if (cloud.size() == 0) throw InputError("the body has no particles");
   if (!(cloud.dx > 0) || !std::isfinite(cloud.dx))
     throw InputError(fmt::format("the cloud's spacing dx = {:g} must be positive", cloud.dx));
@@ -123,7 +125,12 @@ Simulation<D>::Simulation(Cloud<D> cloud, std::shared_ptr<const Material<D>> mat
   for (const Facet<D>& facet : cloud.facets)
     if (facet.owner < 0 || static_cast<std::size_t>(facet.owner) >= cloud.size())
       throw InputError(fmt::format("the owner {} of a facet is none of the {} particles", facet.owner, cloud.size()));
+  // What the method has no use for.
   if (!needs_areas(method.operators)) cloud.facets = {};
+  if (materials_meet(method.formulation) != MaterialsMeet::in_cells) {
+    cloud.cells = {};
+    cloud.cell_share = {};
+  }
   impl_->material.assign(cloud.size(), 0);
   impl_->cloud = std::move(cloud);
   make_local(impl_->cloud);
@@ -414,6 +421,9 @@ void Simulation<D>::prepare() {
                     step));
   s.health = s.health_of_setup = setup_health<D>(s, *formulation);
   s.formulation = std::move(formulation);
+  // A form on cells has taken them over.
+  s.particles.cells = {};
+  s.particles.cell_share = {};
   if (s.initial_velocity)
     for (Index i = 0; i < s.particles.n; ++i)
       s.particles.v.template set_vec<D>(i, s.initial_velocity(s.particles.reference_position(i)));

@@ -39,6 +39,7 @@ struct Discretised {
   PairOperator<D> op;
 
   Discretised(const Cloud<D>& cloud, Method method) {
+    method = with_defaults(method);
     if (method.pair_precision == PairPrecision::automatic)
       method.pair_precision = PairPrecision::single_precision;
     const Kernel kernel(method.kernel, D);
@@ -128,7 +129,7 @@ inline Cloud<2> jittered_cantilever() {
 /// A formulation without a simulation around it: forces of any state. Must stay where it is.
 template <int D>
 struct Bare {
-  Method method;
+  Method method = with_defaults({});
   Constraints<D> constraints;
   Loads<D> loads;
   Particles<D> particles;
@@ -141,7 +142,7 @@ struct Bare {
   Bare(const Cloud<D>& cloud, const std::vector<std::shared_ptr<const Material<D>>>& materials,
        const std::vector<std::uint8_t>& material_of, Method m,
        const std::vector<typename MirrorMap<D>::Plane>& planes = {})
-      : method(std::move(m)),
+      : method(with_defaults(std::move(m))),
         particles(assemble<D>(cloud, materials, material_of, planes, method.support_dx * cloud.dx)),
         formulation(make_formulation<D>({particles, constraints, loads, method})) {}
   Bare(const Bare&) = delete;

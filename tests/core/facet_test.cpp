@@ -22,7 +22,7 @@ Cloud<D> centroids(const Vec<D>& size, double dx, double jitter, unsigned seed =
 }
 
 Method closed(int iterations, const char* kernel = "quadratic") {
-  Method method;
+  Method method = with_defaults({});
   method.operators = "compatible";
   method.kernel = kernel;
   method.pair_precision = PairPrecision::double_precision;

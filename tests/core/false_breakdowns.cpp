@@ -35,7 +35,7 @@ Simulation<2> jelly_of(Cloud<2> cloud, const Form& form) {
 
 // Particles of two squares under a formulation, whose velocities tests set as they like.
 struct LaidOpen {
-  Method method;
+  Method method = with_defaults({});
   std::shared_ptr<const Material<2>> material;
   Particles<2> p;
   Constraints<2> constraints;

@@ -122,7 +122,7 @@ TEST_CASE("health of a run: what neighbours do and gradients do not see") {
 
 TEST_CASE("health of a run: energy and momenta of a free body") {
   for (const char* formulation : {"tl_displacement", "tl_stress_points"}) {
-    Method m;
+    Method m = with_defaults({});
     m.formulation = formulation;
     Simulation<2> s = square(m);
     s.set_velocity([](const Vec<2>& X) { return Vec<2>(1 - 20 * X.y(), 20 * X.x()); });

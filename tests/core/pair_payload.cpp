@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 #include <string>
+#include <taut/core/auto_method.hpp>
 #include <taut/core/error.hpp>
 #include <taut/core/formulation.hpp>
 #include <taut/internal/assembly.hpp>
@@ -42,7 +43,7 @@ struct Body {
   Particles<D> p;
   Constraints<D> constraints;
   Loads<D> loads;
-  Method method;
+  Method method = with_defaults({});
   std::unique_ptr<Formulation<D>> form;
 
   Body(const Cloud<D>& cloud, PairPrecision precision, const Setting& setting = {}) {
@@ -116,7 +117,7 @@ TEST_CASE("a lattice shares its pair vectors, an unordered cloud does not, and a
 }
 
 TEST_CASE("codes of shared vectors name their components, and a lattice leaves many out") {
-  Method method;
+  Method method = with_defaults({});
   method.pair_precision = PairPrecision::shared;
   // A corner that no binary fraction meets.
   const auto cloud = make_cloud(box<3>({0.1, 0.7, -0.3}, {1.1, 1.7, 0.7}), {.dx = 1.0 / 17});
@@ -136,7 +137,7 @@ TEST_CASE("codes of shared vectors name their components, and a lattice leaves m
 }
 
 TEST_CASE("slices that are alike keep their slots once, and each finds its neighbours in the list's order") {
-  Method method;
+  Method method = with_defaults({});
   method.pair_precision = PairPrecision::shared;
   const auto check = [&](const Discretised<3>& body) {
     // A field of the particles' own numbers: what a slot reads of it are its neighbours.

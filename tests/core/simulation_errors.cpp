@@ -17,7 +17,7 @@ const MaterialParameters rubber{.E = 1e6, .nu = 0.3, .density = 1000};
 
 Cloud<2> sheet() { return make_cloud(box<2>({0, 0}, {1, 0.5}), {.dx = 0.1}); }
 
-Simulation<2> simulation(Method method = {}, const char* material = "neo_hookean",
+Simulation<2> simulation(Method method = with_defaults({}), const char* material = "neo_hookean",
                          MaterialParameters parameters = rubber) {
   return {sheet(), make_material<2>(material, parameters), std::move(method)};
 }
@@ -51,7 +51,7 @@ std::string refusal(F&& f) {
   } while (false)
 
 Method with_formulation(const char* formulation) {
-  Method method;
+  Method method = with_defaults({});
   method.formulation = formulation;
   return method;
 }
@@ -59,7 +59,7 @@ Method with_formulation(const char* formulation) {
 }  // namespace
 
 TEST_CASE("simulation errors: unknown names list the valid ones") {
-  Method method;
+  Method method = with_defaults({});
   method.formulation = "tl_dispalcement";
   CHECK_REFUSED(simulation(method), "unknown formulation \"tl_dispalcement\"", "tl_displacement", "ul_basic",
                 "ul_artificial_stress");
@@ -82,12 +82,12 @@ TEST_CASE("simulation errors: unknown names list the valid ones") {
 
 TEST_CASE("simulation errors: numbers out of range") {
   for (const double support : {0.0, 1.0, -2.0, 21.0, not_a_number, infinity}) {
-    Method method;
+    Method method = with_defaults({});
     method.support_dx = support;
     CHECK_REFUSED(simulation(method), "support_dx", "between 1", "20");
   }
   for (const double value : {-1.0, not_a_number, infinity}) {
-    Method method;
+    Method method = with_defaults({});
     method.zero_energy_control = value;
     CHECK_REFUSED(simulation(method), "zero_energy_control", "negative");
     method = {};

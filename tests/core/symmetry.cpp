@@ -1,4 +1,5 @@
 // A part of a body with symmetry planes moves as the same part of the whole body.
+#include <taut/core/auto_method.hpp>
 #include <doctest/doctest.h>
 
 #include "discretised.hpp"
@@ -21,7 +22,7 @@ Vec<D> symmetric_motion(const Vec<D>& X, double size) {
 
 template <int D>
 struct Compared {
-  Method method;
+  Method method = with_defaults({});
   const char* material = "neo_hookean";
   Lattice lattice = Lattice::node_centred;
   int planes = D;

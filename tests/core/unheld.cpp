@@ -229,7 +229,7 @@ TEST_CASE("steps that time does not see are refused") {
 }
 
 TEST_CASE("numbers out of range are refused or called by their name") {
-  const auto of = [](MaterialParameters m, Cloud<2> cloud, Method method = {}) {
+  const auto of = [](MaterialParameters m, Cloud<2> cloud, Method method = with_defaults({})) {
     return Simulation<2>(std::move(cloud), make_material<2>("neo_hookean", m), std::move(method));
   };
   const MaterialParameters good{.E = 2e6, .nu = 0.3, .density = 1000};

@@ -123,7 +123,7 @@ void a_formulation_of_the_user_is_run() {
   const Constraints<2> constraints;
   Loads<2> loads;
   loads.add_body_force(particles.n, Vec<2>(3, -10));
-  const Method method;
+  const Method method = with_defaults({});
   Dust dust({particles, constraints, loads, method});
 
   Formulation<2>& seen = dust;

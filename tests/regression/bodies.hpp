@@ -16,7 +16,7 @@ struct Case {
   Lattice lattice = Lattice::node_centred;
   double jitter = 0;
   Plane plane = Plane::stress;
-  Method method{};
+  Method method = with_defaults({});
   RelaxOptions solve{};
 };
 
@@ -49,7 +49,7 @@ inline Outcome solve(const Case& c) {
 
 /// The discretisation of Tran-Duc et al.: their kernel, h = 1.2 dx.
 inline Method updated_lagrangian(const char* formulation) {
-  Method method;
+  Method method = with_defaults({});
   method.formulation = formulation;
   method.kernel = "sinc5";
   method.support_dx = 2.4;

@@ -24,23 +24,23 @@ struct Answer {
 /// A method under the name that tables show.
 struct Named {
   std::string name;
-  Method method;
+  Method method = with_defaults({});
 };
 
 inline Method total_lagrangian(const char* operators, const char* kernel, double support_dx = 1.5) {
-  Method m;
+  Method m = with_defaults({});
   m.operators = operators;
   m.kernel = kernel;
   m.support_dx = support_dx;
   return m;
 }
 inline Method of_form(const char* formulation) {
-  Method m;
+  Method m = with_defaults({});
   m.formulation = formulation;
   return m;
 }
 inline Method updated(const char* formulation, const char* velocity_gradient = "corrected") {
-  Method m;
+  Method m = with_defaults({});
   m.formulation = formulation;
   m.kernel = "sinc5";
   m.support_dx = 2.4;
@@ -48,7 +48,7 @@ inline Method updated(const char* formulation, const char* velocity_gradient = "
   return m;
 }
 inline Method controlled(double control) {
-  Method m;
+  Method m = with_defaults({});
   m.zero_energy_control = control;
   return m;
 }

@@ -8,6 +8,7 @@
 #include <scaling/lists.hpp>
 #include <scaling/traffic.hpp>
 #include <string>
+#include <taut/core/auto_method.hpp>
 #include <taut/core/error.hpp>
 
 using namespace taut;
@@ -16,7 +17,7 @@ using namespace taut::bench;
 namespace {
 
 Method method_of(Arrangement arrangement, PairPrecision precision = PairPrecision::double_precision) {
-  Method method;
+  Method method = with_defaults({});
   method.support_dx = neighbourhood<3>(32, arrangement).support_dx;
   method.pair_precision = precision;
   return method;
@@ -109,11 +110,11 @@ TEST_CASE("single precision changes accelerations by its round-off, the other pa
 TEST_CASE("cubes have the neighbours that their names say") {
   for (const Neighbourhood& hood : neighbourhoods<3>(Arrangement::lattice)) {
     const Cloud<3> cloud = cube<3>(15 * 15 * 15, Arrangement::lattice);
-    Method method;
+    Method method = with_defaults({});
     method.support_dx = hood.support_dx;
     const auto pairs = [&](double radius) {
       const CompressedPairs p = compressed_pairs(cloud, [&] {
-        Method m;
+        Method m = with_defaults({});
         m.support_dx = radius;
         return m;
       }());
@@ -142,7 +143,7 @@ TEST_CASE("nanoflann's lists hold the pairs of taut's") {
 }
 
 TEST_CASE("an updated Lagrangian body rebuilds its list as often as its rate claims") {
-  Method method;
+  Method method = with_defaults({});
   method.formulation = "ul_basic";
   const Neighbourhood& hood = neighbourhood<3>(32, Arrangement::lattice);
   method.support_dx = hood.support_dx;

@@ -14,6 +14,7 @@
 #include <lib/results.hpp>
 #include <numbers>
 #include <program.hpp>
+#include <taut/core/auto_method.hpp>
 #include <taut/core/error.hpp>
 
 using namespace taut;
@@ -168,7 +169,7 @@ TEST_CASE("finite elements refuse a wrong number of nodes and elements inside ou
 TEST_CASE(
     "swinging cube: finite elements and compatible operators converge on a lattice, standard ones do not") {
   const auto errors = [](const char* operators, int intervals) {
-    Method m;
+    Method m = with_defaults({});
     m.operators = operators;
     const CubeRun run = run_cube({m, intervals, 0, 1}, 1);
     REQUIRE(run.quarter);
@@ -191,7 +192,7 @@ TEST_CASE(
 
 TEST_CASE("swinging cube: started from the undeformed state, compatible stresses are of second order") {
   const auto stress = [](int intervals) {
-    Method m;
+    Method m = with_defaults({});
     m.operators = "compatible";
     CubeSpec spec{m, intervals};
     spec.undeformed = true;
@@ -206,7 +207,7 @@ TEST_CASE("swinging cube: started from the undeformed state, compatible stresses
 
 TEST_CASE("swinging cube: recovered stresses of cells are of second order where those of particles are not") {
   const auto errors = [](bool fem, int intervals) {
-    Method m;
+    Method m = with_defaults({});
     m.formulation = "tl_stress_points";
     CubeSpec spec{m, intervals};
     spec.recover = true;
@@ -225,7 +226,7 @@ TEST_CASE("swinging cube: recovered stresses of cells are of second order where 
 
 TEST_CASE(
     "swinging cube: a rate form starts from the undeformed state, and what cannot take the cube is skipped") {
-  Method m;
+  Method m = with_defaults({});
   m.formulation = "ul_basic";
   m.support_dx = 2.4;
   const CubeRun rate = run_cube({m, 4, 0, 1}, 1);

@@ -2,6 +2,7 @@
 /// \file
 /// The one header for users.
 
+#include <taut/core/auto_method.hpp>
 #include <taut/core/derived.hpp>
 #include <taut/core/error.hpp>
 #include <taut/core/geometry.hpp>

@@ -71,8 +71,8 @@ struct Cloud {
   std::vector<char>
       extra;      ///< 1 for particles of added layers (`LatticeOptions::layers`); empty when there are none
   /// Cells between particles, for formulations that keep stress on cells: their corners, bit d of a corner's
-  /// number telling whether it is the upper one along axis d. Empty unless asked for
-  /// (`LatticeOptions::cells`).
+  /// number telling whether it is the upper one along axis d. Empty for other clouds than node-centred
+  /// lattices, and where they are not wanted (`LatticeOptions::cells`).
   std::vector<std::array<Index, 1 << D>> cells;
   std::vector<double> cell_share;  ///< part of each cell that is body, 0 … 1; empty where all are whole
   double dx = 0;  ///< nominal spacing [m]
@@ -111,7 +111,7 @@ struct LatticeOptions {
   /// points (1 … 16 along each axis) that are inside: volumes of round bodies come closer to the true ones,
   /// at the price of particles of small volume on the surface. The sums below hold all the same.
   int samples = 1;
-  bool cells = false;  ///< also list the cells, 2^D corners of four bytes each
+  bool cells = true;  ///< node-centred lattices list their cells as well, for stress points: 2^D corners of four bytes each
 };
 
 /// Fills a shape with a square lattice aligned with its bounding box, in lexicographic order, x fastest.
@@ -125,8 +125,7 @@ struct LatticeOptions {
 /// are then as long as they were before its coordinates were rounded, as far as can be told: the multiple of
 /// dx, or else the shortest decimal, that this leaves possible. \throws
 /// InputError for a spacing that is not positive or that is larger than the body, jitter, layers or samples
-/// out of range, a body without an inside cell, more cells than `Index` counts, `cells` of a cell-centred
-/// lattice.
+/// out of range, a body without an inside cell, more cells than `Index` counts.
 template <int D>
 Cloud<D> make_cloud(const Shape<D>& shape, const LatticeOptions& options);
 

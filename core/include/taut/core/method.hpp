@@ -27,11 +27,13 @@ std::vector<std::string> pair_precision_names();
 /// Formulation, operators and their parameters. Names are those of the registries; each error lists the valid
 /// ones.
 struct Method {
-  std::string formulation = "tl_displacement";
-  std::string operators = "corrected";
-  std::string kernel = "wendland_c2";
-  /// Support radius over particle spacing, R / dx.
-  double support_dx = 1.5;
+  /// "auto": chosen for the body, by the rules of auto_method.hpp: stress points where the cloud has cells. A method that
+  /// gives operators, a kernel or another key of pairs is `tl_displacement`.
+  std::string formulation = "auto";
+  std::string operators{};  ///< empty: chosen with the formulation; `corrected` where that is given
+  std::string kernel{};     ///< likewise; `wendland_c2`
+  /// Support radius over particle spacing, R / dx. Zero: likewise; 1.5.
+  double support_dx = 0;
   std::string neighbours = "cell_list";
   PairPrecision pair_precision = PairPrecision::automatic;
 
