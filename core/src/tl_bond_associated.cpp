@@ -56,7 +56,7 @@ class TlBondAssociated final : public TotalLagrangian<D> {
   }
 
   double strain_energy() const override;
-  double rough_limit() const override { return 0.3; }
+  double rough_limit() const override { return D == 1 ? told_only : 0.3; }
   MotionSample motion() const override {
     // A bond to a stiff particle is stiff at both ends, so that next to an interface little strain is left to be
     // seen: a sixth of the energy that the other forms have there for twice their error (bench/HEALTH.md, case 11).

@@ -80,7 +80,7 @@ class UpdatedLagrangian : public Formulation<D> {
   }
   void check(Health& health) const override { check_updated_operator<D>(p_, list_.pairs(), table_, health); }
   MotionSample motion() const override { return updated_motion<D>(p_, nearest_, rho_); }
-  double rough_limit() const override { return 0.05; }
+  double rough_limit() const override { return 0.025; }
   std::int64_t pairs() const override { return list_.pairs().pairs(); }
   std::int64_t rebuilds() const override { return list_.builds() - 1; }
   std::size_t bytes() const override {
