@@ -100,7 +100,8 @@ std::vector<Vec<D>> mitres(const Surface<D>& surface, const std::vector<double>&
       wanted += distance[f] * A;
       farthest = std::max(farthest, distance[f]);
     });
-    const Eigen::SelfAdjointEigenSolver<Mat<D>> eigen(normals);
+    using Matrix = Eigen::Matrix<double, D, D>;
+    const Eigen::SelfAdjointEigenSolver<Matrix> eigen(Matrix{normals});
     way[v].setZero();
     for (int d = 0; d < D; ++d)
       if (eigen.eigenvalues()[d] > parallel * eigen.eigenvalues()[D - 1])

@@ -37,14 +37,14 @@ struct StressBlock {
   const double* F = nullptr;
   double* P = nullptr;
   double* energy = nullptr;  ///< stored energy per reference volume [J/m^3], one a particle; or null
+  /// Diagonal of H = F - I, component i of particle p at [i * stride + p], to the digits that F itself has no
+  /// room for where strains are small; or null.
+  const double* H_diagonal = nullptr;
   /// Nominal stress P_kk [Pa] and stretch F_kk along the axes k = D … 2 that the body does not have,
   /// component k - D: P_kk of a stretch of 1 in 1D and plane strain, the stretch that leaves P_33 = 0 in
   /// plane stress. Both or neither; only for laws that `has_lateral_state()`.
   double* P_lateral = nullptr;
   double* F_lateral = nullptr;
-  /// Diagonal of H = F - I, component i of particle p at [i * stride + p], to the digits that F itself has no
-  /// room for where strains are small; or null.
-  const double* H_diagonal = nullptr;
 };
 
 /// Common part of all materials.
