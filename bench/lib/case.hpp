@@ -45,11 +45,14 @@ struct CaseResult {
   double broke_time = 0;  ///< [s]
   std::vector<Measured> measured;
   std::optional<Snapshot> snapshot;
+  std::string field_error;  ///< why the fields could not be written
 
   double rate() const {
     return loop_s > 0 ? static_cast<double>(particles) * static_cast<double>(steps) / loop_s : 0;
   }
-  /// Rows of results.csv, one a probe; probes that this case does not take are marked skipped.
+  /// Rows of results.csv: one a probe, in their order (those that this case does not take are marked
+  /// skipped), then `breakdown_time` [s] where it broke. A value that is missing or not finite makes a row
+  /// suspect.
   std::vector<Row> rows(int threads) const;
 };
 
@@ -57,6 +60,8 @@ struct CaseOptions {
   std::filesystem::path field_file;  ///< .vtkhdf to write; empty: none
   bool keep_snapshot = false;
   Progress progress;
+  /// Called when everything is measured, before fields are written: what took hours is kept first.
+  std::function<void(const CaseResult&)> measured{};
 };
 
 /// Builds everything up to the operators and looks up every reference, so that a bad scene is found before
@@ -66,6 +71,8 @@ void check_case(const Scene& scene, const RunSpec& run, const SweepPoint& point)
 CaseResult run_case(const Scene& scene, const RunSpec& run, const SweepPoint& point,
                     const CaseOptions& options);
 
+/// The name of its files: scene, label, swept values.
+std::string case_name(const Scene& scene, const RunSpec& run, const SweepPoint& point);
 /// "load 3000 N, ν 0.3".
 std::string describe(const SweepPoint& point);
 

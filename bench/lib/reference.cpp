@@ -8,9 +8,10 @@
 namespace taut::bench {
 namespace {
 
-/// Row of the reference file whose key columns hold the sweep point's values.
+/// Row of the reference file whose key columns hold the sweep point's values. \throws InputError for two
 std::optional<std::size_t> find_row(const CsvTable& table, const ReferenceSpec& reference,
                                     const SweepPoint& point) {
+  std::optional<std::size_t> found;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     bool match = true;
     for (const auto& [name, column] : reference.keys) {
@@ -21,9 +22,12 @@ std::optional<std::size_t> find_row(const CsvTable& table, const ReferenceSpec& 
       match =
           match && cell.value && std::abs(*cell.value - wanted->second) <= 1e-9 * std::abs(wanted->second);
     }
-    if (match) return row;
+    if (match && found)
+      throw InputError(fmt::format("{}:{}: has the same keys as line {}", reference.file, table.line(row),
+                                   table.line(*found)));
+    if (match) found = row;
   }
-  return {};
+  return found;
 }
 
 CsvTable open(const ReferenceSpec& reference) {
@@ -53,7 +57,11 @@ std::optional<double> reference_value(const Scene& scene, const RunSpec& run, co
     }
     const auto& cell = table.at(*row, table.column(reference.column));
     if (!cell.value) return {};
-    return *cell.value * reference.scale;
+    const double value = *cell.value * reference.scale;
+    if (!std::isfinite(value))
+      throw InputError(fmt::format("{}:{}: {:g} times the scale {:g} is no finite number", reference.file,
+                                   table.line(*row), *cell.value, reference.scale));
+    return value;
   } catch (const InputError& error) {
     const std::string what = error.what();
     if (what.starts_with(reference.place.str())) throw;

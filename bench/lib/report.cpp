@@ -286,9 +286,10 @@ void add_chart(HtmlPage& page, const Chart& chart, const std::filesystem::path& 
       "quiet");
 }
 
-std::vector<std::string> write_report(const Report& report, const std::filesystem::path& out) {
-  std::vector<std::string> missing;
-  write_cases(report, out);
+namespace {
+
+void write_page(const Report& report, const std::filesystem::path& out, bool figures,
+                std::vector<std::string>& missing) {
   const bool one = report.scenes.size() == 1;
   HtmlPage page(one ? report.scenes[0].scene->title
                     : fmt::format("{}: {} scenes", report.executable, report.scenes.size()));
@@ -301,14 +302,18 @@ std::vector<std::string> write_report(const Report& report, const std::filesyste
                   report.threads, report.threads == 1 ? "" : "s",
                   report.quick ? ". This is the quick version (--quick): coarser, and with fewer cases" : ""),
       "quiet");
+  if (report.unfinished)
+    page.paragraph(fmt::format("The job was interrupted: {} of {} cases were not run.", report.unfinished,
+                               total + report.unfinished),
+                   "lead");
   for (const SceneReport& part : report.scenes) {
     if (!one) page.heading(2, part.scene->title);
     if (!part.scene->description.empty()) page.paragraph(part.scene->description);
     page.paragraph(verdict(part), "lead");
-    write_pictures(page, part, out, missing);
+    if (figures) write_pictures(page, part, out, missing);
     write_runs(page, part);
     write_automatic(page, part);
-    write_charts(page, part, out, missing);
+    if (figures) write_charts(page, part, out, missing);
     write_broken(page, part);
     for (const ProbeSpec& probe : part.scene->probes) write_values(page, part, probe);
     page.paragraph(fmt::format("Scene file: {}. The numbers are in results.csv (one row a quantity) and "
@@ -318,6 +323,16 @@ std::vector<std::string> write_report(const Report& report, const std::filesyste
                    "quiet");
   }
   write_file(out / "report.html", page.str());
+}
+
+}  // namespace
+
+std::vector<std::string> write_report(const Report& report, const std::filesystem::path& out) {
+  std::vector<std::string> missing;
+  write_cases(report, out);
+  // Drawing may take its time, or be interrupted: the numbers first.
+  write_page(report, out, false, missing);
+  write_page(report, out, true, missing);
   return missing;
 }
 
