@@ -75,7 +75,7 @@ std::string outcome(const CaseResult& result) {
     text +=
         fmt::format("{}{} = {:.5g} {}", text.empty() ? "" : ", ", m.probe->name, *m.value, m.probe->unit());
     if (m.reference && *m.reference != 0)
-      text += fmt::format(" ({:+.2f} %)", 100 * error_of(*m.value, *m.reference, false));
+      text += " (" + signed_percent(error_of(*m.value, *m.reference, false), 2) + ')';
   }
   return fmt::format("{}; {} steps, {:.2f} s, {:.2f} M particle-steps/s", text.empty() ? "done" : text,
                      result.steps, result.loop_s, result.rate() * 1e-6);

@@ -9,13 +9,14 @@
 #include <lib/reference.hpp>
 #include <lib/report.hpp>
 #include <lib/scene_charts.hpp>
+#include <lib/text_table.hpp>
 
 namespace taut::bench {
 namespace {
 
 using Cells = std::vector<HtmlCell>;
 
-std::string percent(double error) { return fmt::format("{:+.2f} %", 100 * error); }
+std::string percent(double error) { return signed_percent(error, 2); }
 const char* name_of(Lattice kind) { return kind == Lattice::node_centred ? "node-centred" : "cell-centred"; }
 
 std::string duration(double seconds) {
@@ -175,7 +176,7 @@ void write_values(HtmlPage& page, const SceneReport& part, const ProbeSpec& prob
   }
   const auto shown = [&](double value, std::optional<double> truth) {
     std::string text = fmt::format("{:.4g}", value * factor);
-    if (truth && *truth != 0) text += fmt::format(" ({:+.1f} %)", 100 * (value / *truth - 1));
+    if (truth && *truth != 0) text += " (" + signed_percent(value / *truth - 1, 1) + ')';
     return text;
   };
   for (const SweepPoint& point : points) {

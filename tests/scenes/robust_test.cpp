@@ -242,3 +242,28 @@ TEST_CASE("many shapes are one union, quickly") {
                         "type = \"union\"\nof = [ " + shapes + "]"));
   CHECK(folder.compare("u.toml --out result --no-fields").status == 0);
 }
+
+TEST_CASE("what a case will take is told before, and refused where it is too much") {
+  const Folder folder("sizes");
+  folder.write("good.toml", taut::test::good_scene + "[sweep]\nload = [1, 2]\n");
+  const Outcome table = folder.compare("good.toml --dry-run --out result");
+  CHECK(table.status == 0);
+  CHECK(table.out.find("load 2 N") != std::string::npos);
+  CHECK(table.out.find("  85 ") != std::string::npos);  // 17 × 5 particles
+  CHECK(!fs::exists(folder.path / "result"));
+
+  folder.write("fine.toml", replaced(taut::test::good_scene, "dx = 0.0125", "dx = 0.0000049"));
+  Outcome outcome = folder.compare("fine.toml --out result --max-memory 8GB");
+  CHECK(outcome.status == 2);
+  CHECK(outcome.err.starts_with("taut-compare: fine.toml:10:2: [lattice] dx: 4.9e-06: 4.2e+08 particles"));
+  CHECK(folder.compare("fine.toml --out result", "ulimit -v 16000000 &&").status == 2);
+  CHECK(folder.compare("good.toml --out result --max-memory 1kb").status == 2);
+
+  folder.write("slow.toml", replaced(taut::test::good_scene, "mode = \"relax\"\ntolerance = 1e-4",
+                                     "mode = \"dynamic\"\nduration = 1e-3\nmax_step = 1e-20"));
+  outcome = folder.compare("slow.toml --out result");
+  CHECK(outcome.status == 2);
+  CHECK(outcome.err.find("slow.toml:30:2: [solve] duration: 0.001 s would take about 1e+17 steps") !=
+        std::string::npos);
+  CHECK(!fs::exists(folder.path / "result"));
+}
