@@ -164,7 +164,12 @@ void run_compare(const CommonOptions& common, const CompareOptions& options) {
       write_histories(result, common.out / "histories" / (name + ".csv"));
       progress.end(outcome(result));
     };
-    report.scenes.back().cases.push_back(run_case(scene, run, point, how));
+    try {
+      report.scenes.back().cases.push_back(run_case(scene, run, point, how));
+    } catch (const InputError& error) {
+      // What only a run finds: files are there already, so that this is no bad input of which nothing came.
+      throw RunError(fmt::format("{}: [run] '{}': {}", run.place.str(), run.label, error.what()));
+    }
     ++done;
     field_error = report.scenes.back().cases.back().field_error;
   };

@@ -139,7 +139,7 @@ def findings(code, out, err, folder, before):
     extra = {p for p in after - before if p != "out" and not p.startswith("out/")}
     if extra:
         yield f"written outside --out: {sorted(extra)[:5]}"
-    if any("canary" in p for p in after):
+    if any(pathlib.PurePath(p).name == "canary" for p in after):
         yield "something was executed"
     if any(p.endswith(".tmp") for p in after):
         yield "a temporary file was left"
