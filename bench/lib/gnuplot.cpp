@@ -39,8 +39,7 @@ ChildResult run(const std::vector<std::string>& arguments, const std::filesystem
 
 }  // namespace
 
-Literal::Literal(std::string_view text) {
-  text_ = "'";
+Literal::Literal(std::string_view text) : text_(1, '\'') {
   for (const char c : visible(text)) {
     if (c == '\'') text_ += '\'';
     text_ += c == '\n' || c == '\t' ? ' ' : c;
