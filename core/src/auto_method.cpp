@@ -102,10 +102,13 @@ template <int D>
 bool lies_inside(const Cloud<D>& cloud) {
   try {
     Cloud<D> enclosed;
-    const bool find = cloud.facets.empty() && cloud.B.empty();
+    const bool find = cloud.facets.empty() && !cloud.body;  // a lattice's areas lie on its particles
     if (find) {
       enclosed = cloud;
-      enclose_cloud(enclosed);
+      if (cloud.B.empty())
+        enclose_cloud(enclosed);
+      else
+        place_areas(enclosed);
     }
     const Cloud<D>& known = find ? enclosed : cloud;
     double depth = 0, total = 0;

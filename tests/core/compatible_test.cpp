@@ -83,8 +83,9 @@ TEST_CASE("compatible operators refuse areas that do not enclose the body") {
 }
 
 TEST_CASE("compatible operators say that they need areas next to symmetry planes") {
-  Simulation<2> cells(make_cloud(box<2>({0, 0}, {1, 1}), {.dx = 0.2, .lattice = Lattice::cell_centred}),
-                      make_material<2>("neo_hookean", {.E = 1e6, .nu = 0.3, .density = 1000}), Method{.operators = "compatible"});
+  Cloud<2> bare = make_cloud(box<2>({0, 0}, {1, 1}), {.dx = 0.2, .lattice = Lattice::cell_centred});
+  bare.facets.clear();
+  Simulation<2> cells(bare, make_material<2>("neo_hookean", {.E = 1e6, .nu = 0.3, .density = 1000}), Method{.operators = "compatible"});
   cells.symmetry_plane(0, 0);
   CHECK_THROWS_WITH_AS(cells.prepare(), doctest::Contains("boundary area"), InputError);
 }

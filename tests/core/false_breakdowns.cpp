@@ -43,7 +43,7 @@ struct LaidOpen {
   std::unique_ptr<Formulation<2>> formulation;
 
   explicit LaidOpen(const Form& form)
-      : method{.formulation = form.name, .support_dx = form.support_dx},
+      : method(with_defaults({.formulation = form.name, .support_dx = form.support_dx})),
         material(make_material<2>(form.material, jelly)) {
     const Cloud<2> cloud = two_squares();
     p = assemble<2>(cloud, {material}, std::vector<std::uint8_t>(cloud.size(), 0), {}, form.support_dx * cloud.dx * 1.1);

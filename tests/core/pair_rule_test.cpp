@@ -27,7 +27,7 @@ Cloud<2> slit_strip(int cells, Lattice lattice = Lattice::node_centred, double j
 
 /// Pairs that a simulation has with a method less those that lie in each other's sight.
 std::int64_t pairs_of(const Cloud<2>& cloud, const Method& method) {
-  Simulation<2> s(cloud, rubber(), method);
+  Simulation<2> s(cloud, rubber(), with_defaults(method));
   s.prepare();
   return s.pairs();
 }

@@ -23,9 +23,9 @@ struct HealthMeasure {
   bool flagged() const { return from_below ? !(value >= limit) : !(value <= limit); }
 };
 
-/// The measures that a formulation and a run allow, in a fixed order. Limits are those of bench/HEALTH.md:
-/// set so that answers off by more than 10 % are flagged and answers off by less than 1 % are not, in all
-/// cases whose truth is known there. An answer can be wrong for reasons that no measure sees.
+/// The measures that a formulation and a run allow, in a fixed order. Limits come from the cases of
+/// bench/HEALTH.md: there every answer off by more than 10 % is flagged, and few that are off by less than 1 %.
+/// An answer can be wrong for reasons that no measure sees.
 struct Health {
   std::vector<HealthMeasure> measures;
 
