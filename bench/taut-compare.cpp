@@ -13,6 +13,13 @@ int main(int argc, char** argv) {
   CompareOptions compare;
   app.add_option("scenes", compare.scenes, "Scene files (.toml)")->type_name("SCENE")->required();
   app.add_flag("--no-fields", compare.no_fields, "Leave out the .vtkhdf files");
+  app.add_flag("--dry-run", compare.dry_run,
+               "Run nothing: print particles, pairs, memory, steps and time of every case, estimated");
+  std::uint64_t most = 0;
+  app.add_option("--max-memory", most,
+                 "Refuse cases that would take more, such as 8GB (default: what there is)")
+      ->type_name("SIZE")
+      ->transform(CLI::AsSizeValue(true));
   std::string tolerance;
   const CLI::Option* wanted =
       app.add_option(
@@ -22,6 +29,7 @@ int main(int argc, char** argv) {
              "Exit code 1 where none is found")
           ->type_name("ERROR");
   return run_executable(app, "taut-compare", argc, argv, [&](const CommonOptions& common) {
+    compare.max_memory = static_cast<double>(most);
     if (*wanted) compare.tolerance = parse_tolerance(tolerance);
     run_compare(common, compare);
   });

@@ -7,7 +7,7 @@ function(taut_require package target url)
     return()
   endif()
   if(NOT TAUT_FETCH)
-    message(FATAL_ERROR "taut needs ${package}. Install its package (see README.md, 'Build') "
+    message(FATAL_ERROR "taut needs ${package}. Install its package (see README.md, 'Two commands') "
                         "or configure with -DTAUT_FETCH=ON to download it.")
   endif()
   FetchContent_Declare(${package} URL ${url})

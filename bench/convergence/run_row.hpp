@@ -7,7 +7,7 @@
 
 namespace taut::bench {
 
-/// Particles, pairs, steps, times, memory; a run without a good end becomes `broke` with its time as value.
+/// Particles, pairs, steps, times, memory; a run without a good end becomes `broke`: it has no value.
 template <int D>
 void set_run(Row& row, const Simulation<D>& simulation, const RunResult& result) {
   const auto particles = static_cast<double>(simulation.size());
@@ -22,8 +22,6 @@ void set_run(Row& row, const Simulation<D>& simulation, const RunResult& result)
   row.bytes_per_particle = static_cast<double>(simulation.bytes()) / particles;
   if (result.status == Status::ok) return;
   row.status = "broke";
-  row.value = result.time;
-  row.unit = std::string("s");
 }
 
 }  // namespace taut::bench

@@ -7,6 +7,7 @@
 #include <convergence/run_row.hpp>
 #include <lib/names.hpp>
 #include <lib/progress.hpp>
+#include <taut/core/auto_method.hpp>
 #include <taut/core/error.hpp>
 #include <taut/core/simulation.hpp>
 
@@ -97,7 +98,7 @@ Section study_sheet(const StudyOptions& options) {
   std::vector<Method> methods;
   for (const std::string& operators : names().operators)
     for (const double support_dx : {1.5, 2.4})
-      methods.push_back({.operators = operators, .support_dx = support_dx});
+      methods.push_back(with_defaults({.operators = operators, .support_dx = support_dx}));
   methods.push_back({.formulation = "tl_stress_points"});
   ProgressLine progress(options.common.quiet, 2 * methods.size());
   std::size_t item = 0;

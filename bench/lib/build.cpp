@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <lib/build.hpp>
 #include <lib/scene_parts.hpp>
 #include <limits>
@@ -24,6 +25,26 @@ Vec<D> vec(const std::vector<double>& values) {
   return v;
 }
 
+/// The union of many shapes in one go: a chain of `|` copies itself for each, and is as deep as they are
+/// many.
+template <int D>
+Shape<D> any_of(std::vector<Shape<D>> parts) {
+  Vec<D> min = parts.front().min(), max = parts.front().max();
+  for (const Shape<D>& part : parts) {
+    min = min.cwiseMin(part.min());
+    max = max.cwiseMax(part.max());
+  }
+  const auto shared = std::make_shared<const std::vector<Shape<D>>>(std::move(parts));
+  return Shape<D>(
+      [shared](const Vec<D>& X) {
+        return std::any_of(shared->begin(), shared->end(), [&](const Shape<D>& part) {
+          return (X.array() >= part.min().array()).all() && (X.array() <= part.max().array()).all() &&
+                 part.contains(X);
+        });
+      },
+      min, max);
+}
+
 template <int D>
 Shape<D> make_shape(const ShapeSpec& spec) {
   if (spec.type == "box") return box<D>(vec<D>(spec.min), vec<D>(spec.max));
@@ -31,10 +52,14 @@ Shape<D> make_shape(const ShapeSpec& spec) {
   if (spec.type == "ring") return ring<D>(vec<D>(spec.centre), spec.inner_radius, spec.outer_radius);
   if constexpr (D == 3)
     if (spec.type == "cylinder") return cylinder(vec<3>(spec.from), vec<3>(spec.to), spec.radius);
-  Shape<D> shape = make_shape<D>(spec.of.front());
-  for (std::size_t i = 1; i < spec.of.size(); ++i)
-    shape = spec.type == "union" ? shape | make_shape<D>(spec.of[i]) : shape - make_shape<D>(spec.of[i]);
-  return shape;
+  std::vector<Shape<D>> parts;
+  for (const ShapeSpec& part : spec.of) parts.push_back(make_shape<D>(part));
+  if (spec.type == "difference") {
+    const Shape<D> whole = parts.front();
+    parts.erase(parts.begin());
+    return whole - (parts.size() == 1 ? parts.front() : any_of(std::move(parts)));
+  }
+  return any_of(std::move(parts));
 }
 
 /// The body's bounding box without clamp layers, and how far from a face its particles may lie.
@@ -163,7 +188,37 @@ double shortest_edge_of(const ShapeSpec& geometry) {
   return coordinate_difference<D>(shape.max(), shape.min()).minCoeff();
 }
 
+template <int D>
+BodySize body_size_of(const ShapeSpec& geometry) {
+  const Shape<D> shape = at_place(geometry.place, "geometry", [&] { return make_shape<D>(geometry); });
+  const Vec<D> size = shape.max() - shape.min();
+  BodySize body{{size.data(), size.data() + D}, 1};
+  if (geometry.type == "box") return body;
+  constexpr int samples = D == 3 ? 24 : D == 2 ? 100 : 1000;
+  int inside = 0, all = 1;
+  for (int d = 0; d < D; ++d) all *= samples;
+  for (int i = 0; i < all; ++i) {
+    Vec<D> X = shape.min();
+    for (int d = 0, rest = i; d < D; ++d, rest /= samples) X[d] += (rest % samples + 0.5) / samples * size[d];
+    inside += shape.contains(X);
+  }
+  body.fraction = static_cast<double>(inside) / all;
+  return body;
+}
+
 }  // namespace
+
+BodySize body_size(const Scene& scene) {
+  if (scene.dimension == 1) return body_size_of<1>(scene.geometry);
+  if (scene.dimension == 2) return body_size_of<2>(scene.geometry);
+  return body_size_of<3>(scene.geometry);
+}
+
+double wave_speed_of(const Scene& scene, const MaterialSpec& material) {
+  if (scene.dimension == 1) return build_material<1>(material)->wave_speed();
+  if (scene.dimension == 2) return build_material<2>(material)->wave_speed();
+  return build_material<3>(material)->wave_speed();
+}
 
 double shortest_edge(const Scene& scene) {
   if (scene.dimension == 1) return shortest_edge_of<1>(scene.geometry);

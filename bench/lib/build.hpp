@@ -26,4 +26,14 @@ bool is_near_shape(const Scene& scene, const Vec<D>& X, double distance);
 /// Least edge of the bounding box of a body that is a shape (not a cloud from a file) [m].
 double shortest_edge(const Scene& scene);
 
+/// The bounding box of a scene's shape, and how much of it is body (by sampling). Not for clouds from files.
+struct BodySize {
+  std::vector<double> edges;  ///< [m]
+  double fraction = 1;
+};
+BodySize body_size(const Scene& scene);
+
+/// Speed of pressure waves [m/s].
+double wave_speed_of(const Scene& scene, const MaterialSpec& material);
+
 }  // namespace taut::bench

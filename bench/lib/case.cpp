@@ -5,6 +5,7 @@
 #include <lib/analytic.hpp>
 #include <lib/build.hpp>
 #include <lib/case.hpp>
+#include <lib/files.hpp>
 #include <lib/measure.hpp>
 #include <lib/reference.hpp>
 #include <lib/scene_keys.hpp>
@@ -132,6 +133,12 @@ std::string unmet(const RunResult& run, double tolerance) {
   return "forces balance and the body is at rest, but not for long enough";
 }
 
+/// Numbers that a table can hold.
+std::optional<double> finite(std::optional<double> value) {
+  if (value && !std::isfinite(*value)) value.reset();
+  return value;
+}
+
 void record(CaseResult& result, const RunResult& run, const RunSpec& spec, int dimension) {
   result.steps = run.steps;
   result.time = run.time;
@@ -215,7 +222,12 @@ CaseResult run(const Scene& scene, const RunSpec& spec, const SweepPoint& point,
     }
 
   if (options.keep_snapshot) result.snapshot = snapshot(simulation);
-  if (!options.field_file.empty()) write_vtkhdf(options.field_file.string(), simulation);
+  if (options.measured) options.measured(result);
+  if (!options.field_file.empty()) try {
+      write_vtkhdf(options.field_file.string(), simulation);
+    } catch (const Error& error) {
+      result.field_error = error.what();
+    }
   return result;
 }
 
@@ -289,80 +301,89 @@ CaseResult run_case(const Scene& scene, const RunSpec& spec, const SweepPoint& p
   return run<3>(scene, spec, point, options);
 }
 
+std::string case_name(const Scene& scene, const RunSpec& run, const SweepPoint& point) {
+  std::string name = scene.name + ' ' + run.label;
+  for (const auto& [key, value] : point) name += ' ' + key + ' ' + snake_number(value);
+  return file_name_of(name);
+}
+
 std::string describe(const SweepPoint& point) {
   std::string text;
   for (const auto& [name, value] : point) {
     text += text.empty() ? "" : ", ";
     if (name == "load")
-      text += fmt::format("load {:g} N", value);
+      text += fmt::format("load {:.12g} N", value);
     else if (name == "nu")
-      text += fmt::format("ν {:g}", value);
+      text += fmt::format("ν {:.12g}", value);
     else if (name == "dx")
-      text += fmt::format("dx {:g} mm", value * 1e3);
+      text += fmt::format("dx {:.12g} mm", value * 1e3);
     else
-      text += fmt::format("region density {:g} kg/m³", value);
+      text += fmt::format("region density {:.12g} kg/m³", value);
   }
   return text;
 }
 
 std::vector<Row> CaseResult::rows(int threads) const {
+  Row common;
+  common.scene = scene->name;
+  set_method(common, run->method);
+  common.material = material;
+  if (dx > 0) common.dx = dx;
+  common.integrator = run->solve.mode == "relax" ? "relax" : run->solve.integrator;
+  common.threads = threads;
+  common.label = run->label;
+  std::string suffix;
+  for (const auto& [name, value] : point)
+    if (name != "dx") {  // that has a column
+      suffix += '_' + name + '_' + snake_number(value);
+      common.swept[name] = value;
+    }
+  Row taken = common;
+  taken.particles = particles;
+  taken.pairs = pairs;
+  taken.steps = steps;
+  taken.time = time;
+  taken.setup_s = setup_s;
+  taken.loop_s = loop_s;
+  if (loop_s > 0) taken.particle_steps_per_s = rate();
+  if (particles > 0) taken.bytes_per_particle = bytes / static_cast<double>(particles);
+
   std::vector<Row> rows;
-  const auto row_of = [&](const std::string& quantity) {
-    Row row;
-    row.scene = scene->name;
-    set_method(row, run->method);
-    row.material = material;
-    if (dx > 0) row.dx = dx;
-    row.integrator = run->solve.mode == "relax" ? "relax" : run->solve.integrator;
-    row.threads = threads;
-    row.quantity = quantity;
-    for (const auto& [name, value] : point)
-      if (name != "dx") row.quantity += '_' + name + '_' + snake_number(value);
-    return row;
-  };
-  const auto add_costs = [&](Row& row) {
-    row.particles = particles;
-    row.pairs = pairs;
-    row.steps = steps;
-    row.time = time;
-    row.setup_s = setup_s;
-    row.loop_s = loop_s;
-    if (loop_s > 0) row.particle_steps_per_s = rate();
-    if (particles > 0) row.bytes_per_particle = bytes / static_cast<double>(particles);
-  };
   for (const ProbeSpec& probe : scene->probes) {
-    Row row = row_of(probe.name);
-    row.unit = probe.unit();
     const auto found =
         std::find_if(measured.begin(), measured.end(), [&](const Measured& m) { return m.probe == &probe; });
+    Row row = found == measured.end() ? common : taken;
+    row.quantity = probe.name + suffix;
+    row.unit = probe.unit();
     if (found == measured.end()) {
       row.status = "skipped";
-      rows.push_back(std::move(row));
-      continue;
-    }
-    add_costs(row);
-    if (broke) {
-      row.status = "broke";
-      row.value = broke_time;
-      row.unit = "s";
-    } else if (!found->value) {
+    } else if (broke) {
       row.status = "broke";
     } else {
       if (suspect()) row.status = "suspect";
-      row.value = found->value;
-      row.reference = found->reference;
+      row.value = finite(found->value);
+      row.reference = finite(found->reference);
       if (probe.measure == "curve_error") row.error = row.value;
       if (row.value && row.reference)
-        row.error = error_of(*row.value, *row.reference, probe.measure == "arrival_time");
+        row.error = finite(error_of(*row.value, *row.reference, probe.measure == "arrival_time"));
+      if (!row.value) row.status = "suspect";
     }
     rows.push_back(std::move(row));
   }
+  if (broke && !measured.empty()) {
+    Row row = taken;
+    row.quantity = "breakdown_time" + suffix;
+    row.unit = "s";
+    row.value = finite(broke_time);
+    row.status = row.value ? "ok" : "suspect";
+    rows.push_back(std::move(row));
+  }
   for (const HealthMeasure& m : health.measures) {
-    Row row = row_of(m.name);
-    add_costs(row);
-    row.value = m.value;
+    Row row = taken;
+    row.quantity = m.name + suffix;
     row.unit = "1";
-    if (m.flagged()) row.status = "suspect";
+    row.value = finite(m.value);
+    if (m.flagged() || !row.value) row.status = "suspect";
     rows.push_back(std::move(row));
   }
   return rows;

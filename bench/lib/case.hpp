@@ -46,14 +46,16 @@ struct CaseResult {
   std::vector<Measured> measured;
   Health health;
   std::optional<Snapshot> snapshot;
+  std::string field_error;  ///< why the fields could not be written
 
   double rate() const {
     return loop_s > 0 ? static_cast<double>(particles) * static_cast<double>(steps) / loop_s : 0;
   }
   /// It finished, but a measure of its health is beyond its limit.
   bool suspect() const { return !broke && health.suspect(); }
-  /// Rows of results.csv, one a probe, then one a measure of health; probes that this case does not take are
-  /// marked skipped.
+  /// Rows of results.csv: one a probe, in their order (those that this case does not take are marked
+  /// skipped), then `breakdown_time` [s] where it broke, then one a measure of health. A value that is missing
+  /// or not finite makes a row suspect.
   std::vector<Row> rows(int threads) const;
 };
 
@@ -61,6 +63,8 @@ struct CaseOptions {
   std::filesystem::path field_file;  ///< .vtkhdf to write; empty: none
   bool keep_snapshot = false;
   Progress progress;
+  /// Called when everything is measured, before fields are written: what took hours is kept first.
+  std::function<void(const CaseResult&)> measured{};
 };
 
 /// Builds everything up to the first step and reads every probe that the run takes at some sweep point once,
@@ -71,6 +75,8 @@ void check_case(const Scene& scene, const RunSpec& run, const SweepPoint& point)
 CaseResult run_case(const Scene& scene, const RunSpec& run, const SweepPoint& point,
                     const CaseOptions& options);
 
+/// The name of its files: scene, label, swept values.
+std::string case_name(const Scene& scene, const RunSpec& run, const SweepPoint& point);
 /// "load 3000 N, ν 0.3".
 std::string describe(const SweepPoint& point);
 

@@ -45,53 +45,60 @@ std::string csv_of(const Chart& chart) {
   return text;
 }
 
-std::string style_of(const Series& s) {
+using gnuplot::Literal;
+using gnuplot::Script;
+
+Script style_of(const Series& s) {
   static constexpr std::array<int, 7> filled = {7, 5, 9, 13, 11, 15, 7}, hollow = {6, 4, 8, 12, 10, 14, 6};
+  const Literal colour(run_colour(s.colour));
   const auto mark = static_cast<std::size_t>(s.mark < 0 ? std::max(s.colour, 0) : s.mark) % filled.size();
   switch (s.style) {
     case Series::Style::truth:
-      return s.marks ? "with linespoints lc rgb '#111111' lw 2 pt 1 ps 0.9"
-                     : "with lines lc rgb '#111111' lw 2";
+      return s.marks ? Script("with linespoints lc rgb '#111111' lw 2 pt 1 ps 0.9")
+                     : Script("with lines lc rgb '#111111' lw 2");
     case Series::Style::guide:
-      return "with lines lc rgb '#999999' lw 1 dt 2";
+      return Script("with lines lc rgb '#999999' lw 1 dt 2");
     case Series::Style::printed:
-      return fmt::format("with points lc rgb '{}' lw 1.6 pt {} ps 1.15", run_colour(s.colour), hollow[mark]);
+      return Script("with points lc rgb {} lw 1.6 pt {} ps 1.15", colour, hollow[mark]);
     case Series::Style::bar:
-      return fmt::format("with boxes fill solid 1 noborder lc rgb '{}'", run_colour(s.colour));
+      return Script("with boxes fill solid 1 noborder lc rgb {}", colour);
     case Series::Style::scatter:
-      return fmt::format("with points lc rgb '{}' pt {} ps 1", run_colour(s.colour), filled[mark]);
+      return Script("with points lc rgb {} pt {} ps 1", colour, filled[mark]);
     case Series::Style::run:
       break;
   }
-  if (!s.marks) return fmt::format("with lines lc rgb '{}' lw 1.8", run_colour(s.colour));
-  return fmt::format("with linespoints lc rgb '{}' lw 1.8 pt {} ps 0.75", run_colour(s.colour), filled[mark]);
+  if (!s.marks) return Script("with lines lc rgb {} lw 1.8", colour);
+  return Script("with linespoints lc rgb {} lw 1.8 pt {} ps 0.75", colour, filled[mark]);
+}
+
+void add_tick(Script& ticks, const std::string& text, double at) {
+  if (!ticks.empty()) ticks.add(", ");
+  ticks.add("{} {}", Literal(text), at);
 }
 
 /// Ticks at 1, 2 and 5 of each decade, or at decades alone where there are many.
-std::string log_ticks(const Extent& e) {
-  std::string ticks;
+Script log_ticks(const Extent& e) {
+  Script ticks;
   const bool many = e.max / e.min > 1e3;
   for (int decade = static_cast<int>(std::floor(std::log10(e.min))); std::pow(10, decade) <= e.max; ++decade)
     for (const int digit : {1, 2, 5}) {
       const double at = digit * std::pow(10, decade);
       if (at < e.min || at > e.max || (many && digit != 1)) continue;
-      ticks += fmt::format("{}'{:g}' {}", ticks.empty() ? "" : ", ", at, at);
+      add_tick(ticks, fmt::format("{:g}", at), at);
     }
-  return '(' + ticks + ')';
+  return Script("({})", ticks);
 }
 
-std::string given_ticks(const std::vector<double>& values) {
-  std::string ticks;
-  for (const double value : values)
-    ticks += fmt::format("{}'{:g}' {}", ticks.empty() ? "" : ", ", value, value);
-  return '(' + ticks + ')';
+Script given_ticks(const std::vector<double>& values) {
+  Script ticks;
+  for (const double value : values) add_tick(ticks, fmt::format("{:g}", value), value);
+  return Script("({})", ticks);
 }
 
-std::string named_ticks(const std::vector<std::string>& names) {
-  std::string ticks;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    ticks += fmt::format("{}{} {}", ticks.empty() ? "" : ", ", quoted(names[i]), i);
-  return '(' + ticks + ')';
+Script named_ticks(const std::vector<std::string>& names) {
+  Script ticks;
+  for (std::size_t i = 0; i < names.size(); ++i) add_tick(ticks, names[i], static_cast<double>(i));
+  return Script("({})", ticks);
 }
 
 /// As many columns in the legend as labels leave room for.
@@ -108,7 +115,7 @@ int legend_rows(const Chart& chart) {
   return (entries + columns - 1) / columns;
 }
 
-std::string script_of(const Chart& chart) {
+Script script_of(const Chart& chart) {
   Extent x, y;
   int broken = 0;
   for (const Series& s : chart.series) {
@@ -124,69 +131,70 @@ std::string script_of(const Chart& chart) {
   const double room = 0.055 * broken + (broken ? 0.09 : 0);
   y = padded_extent(y, chart.log_y, 0.06 + room, 0.07);
 
-  std::string out = fmt::format("set title {} font ',15'\nset xlabel {}\nset ylabel {}\n",
-                                quoted(chart.title), quoted(chart.x_label), quoted(chart.y_label));
-  out +=
+  Script out("set title {} font ',15'\nset xlabel {}\nset ylabel {}\n", Literal(chart.title),
+             Literal(chart.x_label), Literal(chart.y_label));
+  out.add(
       "set border 3 lc rgb '#555555'\nset tics nomirror textcolor rgb '#333333'\nset grid lc rgb '#e4e4e4' "
       "lw 1 lt 1\n"
-      "set key below left vertical samplen 2.5 spacing 1.15 width 1 Left reverse noenhanced\n";
-  out += fmt::format("set key maxrows {}\n", legend_rows(chart));
+      "set key below left vertical samplen 2.5 spacing 1.15 width 1 Left reverse noenhanced\n");
+  out.add("set key maxrows {}\n", legend_rows(chart));
   if (chart.log_x)
-    out += "set logscale x\nset xtics " +
-           (chart.x_ticks.empty() ? log_ticks(x) : given_ticks(chart.x_ticks)) + '\n';
+    out.add("set logscale x\nset xtics {}\n",
+            chart.x_ticks.empty() ? log_ticks(x) : given_ticks(chart.x_ticks));
   const auto bars = std::count_if(chart.series.begin(), chart.series.end(),
                                   [](const Series& s) { return s.style == Series::Style::bar; });
   const double bar_width = 0.8 / static_cast<double>(std::max<std::ptrdiff_t>(bars, 1));
   if (!chart.x_names.empty())
-    out += fmt::format("set xtics {}\nset boxwidth {}\n", named_ticks(chart.x_names), 0.9 * bar_width);
+    out.add("set xtics {}\nset boxwidth {}\n", named_ticks(chart.x_names), 0.9 * bar_width);
   if (bars && !chart.log_y) y.min = 0;
-  if (chart.log_y) out += "set logscale y\nset ytics " + log_ticks(y) + '\n';
-  if (!chart.log_x && std::max(std::abs(x.min), std::abs(x.max)) < 1e-2) out += "set format x '%.1s %c'\n";
-  out += fmt::format("set xrange [{}:{}]\nset yrange [{}:{}]\n", x.min, x.max, y.min, y.max);
+  if (chart.log_y) out.add("set logscale y\nset ytics {}\n", log_ticks(y));
+  if (!chart.log_x && std::max(std::abs(x.min), std::abs(x.max)) < 1e-2) out.add("set format x '%.1s %c'\n");
+  out.add("set xrange [{}:{}]\nset yrange [{}:{}]\n", x.min, x.max, y.min, y.max);
   if (chart.line_at_zero && !chart.log_y)
-    out += "set arrow from graph 0, first 0 to graph 1, first 0 nohead lc rgb '#777777' lw 1 back\n";
+    out.add("set arrow from graph 0, first 0 to graph 1, first 0 nohead lc rgb '#777777' lw 1 back\n");
   if (broken)
-    out += fmt::format("set label 'broke:' at graph 0.01, graph {} font ',11' textcolor rgb '#666666'\n",
-                       0.05 + 0.05 * broken);
+    out.add("set label 'broke:' at graph 0.01, graph {} font ',11' textcolor rgb '#666666'\n",
+            0.05 + 0.05 * broken);
 
   double up = 0.45;  // above and below by turns: neighbours are less in each other's way
   for (const ChartLabel& label : chart.labels) {
-    out += fmt::format("set label {} at {},{} left offset 0.8,{} font ',11' textcolor rgb '#333333' front\n",
-                       quoted(label.text), label.x, label.y, up);
+    out.add("set label {} at {},{} left offset 0.8,{} font ',11' textcolor rgb '#333333' front\n",
+            Literal(label.text), label.x, label.y, up);
     up = -up;
   }
 
-  std::string plots;
+  Script plots;
   int row = 0, block = 0, bar = 0;
-  const auto add = [&](const std::string& what) {
-    plots += (plots.empty() ? "plot " : ", \\\n     ") + what;
+  const auto add = [&](const Script& what) {
+    plots.add("{}{}", plots.empty() ? Script("plot ") : Script(", \\\n     "), what);
   };
   for (const Series& s : chart.series) {
-    std::string data;
+    Script data;
     const double beside =
         s.style == Series::Style::bar ? (bar++ - 0.5 * static_cast<double>(bars - 1)) * bar_width : 0;
     for (std::size_t i = 0; i < s.x.size(); ++i)
-      if (std::isfinite(s.x[i]) && std::isfinite(s.y[i]))
-        data += fmt::format("{} {}\n", s.x[i] + beside, s.y[i]);
-    const std::string title = s.label.empty() || !s.in_legend ? "notitle" : "title " + quoted(s.label);
-    const std::string name = fmt::format("$d{}", block++);
-    out += name + " << EOD\n" + (data.empty() ? "NaN NaN\n" : data) + "EOD\n";
-    add(fmt::format("{} using 1:2 {} {}", name, style_of(s), title));
+      if (std::isfinite(s.x[i]) && std::isfinite(s.y[i])) data.add("{} {}\n", s.x[i] + beside, s.y[i]);
+    if (data.empty()) data.add("NaN NaN\n");
+    const Script title =
+        s.label.empty() || !s.in_legend ? Script("notitle") : Script("title {}", Literal(s.label));
+    const Script name("$d{}", block++);
+    out.add("{} << EOD\n{}EOD\n", name, data);
+    add(Script("{} using 1:2 {} {}", name, style_of(s), title));
     if (s.style == Series::Style::bar)
       add(
-          fmt::format("{} using 1:2:(sprintf($2 < 100 ? '%.3g' : '%.0f', $2)) with labels offset 0,0.6 font "
-                      "',12' notitle",
-                      name));
+          Script("{} using 1:2:(sprintf($2 < 100 ? '%.3g' : '%.0f', $2)) with labels offset 0,0.6 font "
+                 "',12' notitle",
+                 name));
     if (s.broke_x.empty()) continue;
     const double at = 0.03 + 0.05 * row++;
     const double level = chart.log_y ? y.min * std::pow(y.max / y.min, at) : y.min + at * (y.max - y.min);
-    std::string crosses;
-    for (const double v : s.broke_x) crosses += fmt::format("{} {}\n", v, level);
-    out += fmt::format("$b{} << EOD\n{}EOD\n", block, crosses);
-    add(fmt::format("$b{} using 1:2 with points lc rgb '{}' lw 2.2 pt 2 ps 0.8 notitle", block++,
-                    run_colour(s.colour)));
+    Script crosses;
+    for (const double v : s.broke_x) crosses.add("{} {}\n", v, level);
+    out.add("$b{} << EOD\n{}EOD\n", block, crosses);
+    add(Script("$b{} using 1:2 with points lc rgb {} lw 2.2 pt 2 ps 0.8 notitle", block++,
+               Literal(run_colour(s.colour))));
   }
-  return out + plots + '\n';
+  return out.add("{}\n", plots);
 }
 
 }  // namespace
@@ -209,10 +217,9 @@ std::string run_colour(int index) {
 bool write_chart(const Chart& chart, const std::filesystem::path& folder, std::string& why) {
   write_file(folder / (chart.name + ".csv"), csv_of(chart));
   const int rows = legend_rows(chart);
-  const std::string terminal =
-      fmt::format("svg size {},{} font 'sans-serif,13' noenhanced background '#ffffff' rounded", chart_width,
-                  440 + 20 * rows);
-  return run_gnuplot(terminal, script_of(chart), folder / (chart.name + ".svg"), why);
+  const Script terminal("svg size {},{} font 'sans-serif,13' noenhanced background '#ffffff' rounded",
+                        chart_width, 440 + 20 * rows);
+  return gnuplot::draw(terminal, script_of(chart), folder / (chart.name + ".svg"), why);
 }
 
 }  // namespace taut::bench

@@ -12,6 +12,8 @@ namespace taut::bench {
 struct CompareOptions {
   std::vector<std::string> scenes;
   bool no_fields = false;
+  bool dry_run = false;             ///< print what each case would take, and run none
+  double max_memory = 0;            ///< [bytes]; 0: what there is
   std::optional<double> tolerance;  ///< search the cheapest method that meets it instead; see tolerance.hpp
 };
 

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <fstream>
 #include <lib/csv_table.hpp>
+#include <lib/files.hpp>
+#include <lib/terminal.hpp>
+#include <sstream>
 #include <taut/core/error.hpp>
 
 namespace taut::bench {
@@ -23,17 +26,34 @@ std::vector<std::string> split(const std::string& line) {
   return fields;
 }
 
+/// Without the mark that spreadsheets put before UTF-8. \throws InputError for what is too large to be meant
+std::string text_of(const std::filesystem::path& file) {
+  constexpr std::size_t most = std::size_t{64} << 20;
+  try {
+    std::string text = read_file(file, most);
+    if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
+    return text;
+  } catch (const RunError& error) {
+    throw InputError(error.what());
+  }
+}
+
 }  // namespace
 
 CsvTable::CsvTable(const std::filesystem::path& file) : file_(file.string()) {
-  std::ifstream in(file);
-  if (!in || std::filesystem::is_directory(file)) throw InputError(file_ + ": cannot open the table");
+  if (!std::ifstream(file) || std::filesystem::is_directory(file))
+    throw InputError(file_ + ": cannot open the table");
+  std::istringstream in(text_of(file));
   std::string line;
   for (unsigned number = 1; std::getline(in, line); ++number) {
     const std::vector<std::string> fields = split(line);
     if (line.starts_with('#') || (fields.size() == 1 && fields[0].empty())) continue;
     if (header_.empty()) {
       header_ = fields;
+      std::vector<std::string> sorted = fields;
+      std::sort(sorted.begin(), sorted.end());
+      if (const auto twice = std::adjacent_find(sorted.begin(), sorted.end()); twice != sorted.end())
+        throw InputError(fmt::format("{}:{}: has two columns '{}'", file_, number, brief(*twice)));
       continue;
     }
     if (fields.size() != header_.size())
@@ -50,11 +70,12 @@ CsvTable::CsvTable(const std::filesystem::path& file) : file_(file.string()) {
       const char* begin = text.data() + (text[0] == '+');
       const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
       if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-        throw InputError(
-            fmt::format("{}:{}: column {}: '{}' is not a finite number", file_, number, header_[c], text));
+        throw InputError(fmt::format("{}:{}: column {}: '{}' is not a finite number", file_, number,
+                                     brief(header_[c]), brief(text)));
       row.push_back({value, false});
     }
     cells_.push_back(std::move(row));
+    lines_.push_back(number);
   }
   if (header_.empty()) throw InputError(file_ + ": has no header line with column names");
 }
@@ -62,7 +83,8 @@ CsvTable::CsvTable(const std::filesystem::path& file) : file_(file.string()) {
 std::size_t CsvTable::column(const std::string& name) const {
   const auto found = std::find(header_.begin(), header_.end(), name);
   if (found == header_.end())
-    throw InputError(fmt::format("{}: has no column '{}'; valid: {}", file_, name, fmt::join(header_, ", ")));
+    throw InputError(fmt::format("{}: has no column '{}'; valid: {}", file_, name,
+                                 brief(fmt::format("{}", fmt::join(header_, ", ")), 2000)));
   return static_cast<std::size_t>(found - header_.begin());
 }
 

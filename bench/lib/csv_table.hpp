@@ -18,19 +18,21 @@ class CsvTable {
     bool broke = false;
   };
 
-  /// \throws InputError "file:line: what" for a missing file, a wrong number of fields or what is no finite
-  /// number.
+  /// \throws InputError "file:line: what" for a missing file, two columns of one name, a wrong number of
+  /// fields or what is no finite number.
   explicit CsvTable(const std::filesystem::path& file);
 
   /// \throws InputError listing the valid columns.
   std::size_t column(const std::string& name) const;
   std::size_t rows() const { return cells_.size(); }
+  unsigned line(std::size_t row) const { return lines_[row]; }  ///< of the file
   const Cell& at(std::size_t row, std::size_t column) const { return cells_[row][column]; }
 
  private:
   std::string file_;
   std::vector<std::string> header_;
   std::vector<std::vector<Cell>> cells_;
+  std::vector<unsigned> lines_;
 };
 
 }  // namespace taut::bench

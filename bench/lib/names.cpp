@@ -1,4 +1,5 @@
 #include <lib/names.hpp>
+#include <taut/core/auto_method.hpp>
 #include <taut/core/formulation.hpp>
 #include <taut/core/kernel.hpp>
 #include <taut/core/operators.hpp>
@@ -14,6 +15,10 @@ const Names& names() {
 }
 
 bool has_pairs(const std::string& formulation) { return formulation != "tl_stress_points"; }
+double default_support(const std::string& formulation, const std::string& operators) {
+  // Particles that change neighbours, and quadratic fits, need more of them.
+  return formulation.starts_with("ul_") || operators == "quadratic" ? 2.4 : with_defaults({}).support_dx;
+}
 double default_control(const std::string& formulation) { return has_pairs(formulation) ? 0 : 1; }
 
 }  // namespace taut::bench

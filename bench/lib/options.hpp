@@ -18,8 +18,8 @@ struct CommonOptions {
 enum ExitCode { done = 0, run_failed = 1, bad_input = 2 };
 
 /// Adds --out (default out/NAME), --threads, --quick, --quiet, --version to `app`, parses, sets the number of
-/// threads and calls `body`. Returns the exit code: 0 done, 1 run failed, 2 bad input; messages go to
-/// standard error.
+/// threads (no more than processors) and calls `body`. Returns the exit code: 0 done, 1 run failed, 2 bad
+/// input, 128 + signal where one asked for the end; messages go to standard error.
 int run_executable(CLI::App& app, const std::string& name, int argc, char** argv,
                    const std::function<void(const CommonOptions&)>& body);
 

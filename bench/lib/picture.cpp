@@ -5,6 +5,7 @@
 #include <lib/gnuplot.hpp>
 #include <lib/picture.hpp>
 #include <lib/scene_charts.hpp>
+#include <lib/terminal.hpp>
 
 namespace taut::bench {
 namespace {
@@ -93,9 +94,12 @@ Frame frame_of(const std::vector<const CaseResult*>& cases) {
   return {frame.x0 - margin, frame.x1 + margin, frame.y0 - margin, frame.y1 + margin};
 }
 
-std::string panel(const CaseResult& c, const std::string& name, const Frame& frame, double unit, int number) {
+using gnuplot::Literal;
+using gnuplot::Script;
+
+Script panel(const CaseResult& c, const std::string& name, const Frame& frame, double unit, int number) {
   const std::vector<double>& field = c.snapshot->fields.at(name);
-  std::string data;
+  Script data;
   const double cell = c.dx > 0 ? c.dx : 0.01 * (frame.x1 - frame.x0);
   // Five digits of the frame, however far from the origin it lies.
   const double furthest =
@@ -110,20 +114,20 @@ std::string panel(const CaseResult& c, const std::string& name, const Frame& fra
   for (const auto& [z, i] : depth) {
     const auto& x = c.snapshot->x[i];
     if (x[0] < frame.x0 || x[0] > frame.x1 || x[1] < frame.y0 || x[1] > frame.y1) continue;
-    data += fmt::format("{:.{}g} {:.{}g} {:.4g}\n", x[0] * 1e3, digits, x[1] * 1e3, digits, field[i] * unit);
+    data.add("{:.{}g} {:.{}g} {:.4g}\n", x[0] * 1e3, digits, x[1] * 1e3, digits, field[i] * unit);
   }
-  std::string lines;
-  for (const auto& p : outline(c.scene->geometry)) lines += fmt::format("{} {}\n", p[0] * 1e3, p[1] * 1e3);
-  std::string out =
-      fmt::format("$p{} << EOD\n{}EOD\n$o{} << EOD\n{}EOD\n", number, data.empty() ? "NaN NaN NaN\n" : data,
-                  number, lines.empty() ? "NaN NaN\n" : lines);
+  if (data.empty()) data.add("NaN NaN NaN\n");
+  Script lines;
+  for (const auto& p : outline(c.scene->geometry)) lines.add("{} {}\n", p[0] * 1e3, p[1] * 1e3);
+  if (lines.empty()) lines.add("NaN NaN\n");
+  Script out("$p{} << EOD\n{}EOD\n$o{} << EOD\n{}EOD\n", number, data, number, lines);
   const char* colour = c.broke ? "#C0392B" : within_accuracy(c) ? "#1E7B45" : "#A86400";
-  out += fmt::format("set label 1 {} at graph 0, 1.0 left offset 0,1.75 font ',13' textcolor rgb '#111111'\n",
-                     quoted(c.run->label));
-  out += fmt::format("set label 2 {} at graph 0, 1.0 left offset 0,0.7 font ',12' textcolor rgb '{}'\n",
-                     quoted(verdict(c)), colour);
+  out.add("set label 1 {} at graph 0, 1.0 left offset 0,1.75 font ',13' textcolor rgb '#111111'\n",
+          Literal(brief(c.run->label)));
+  out.add("set label 2 {} at graph 0, 1.0 left offset 0,0.7 font ',12' textcolor rgb {}\n",
+          Literal(verdict(c)), Literal(colour));
   // Discs a little wider than the spacing leave no gaps in a body that is whole.
-  out += fmt::format(
+  out.add(
       "plot $p{} using 1:2:({:.5g}):3 with circles lc palette fs solid 1 noborder notitle, "
       "$o{} using 1:2 with lines lc rgb '#777777' lw 1.2 dt (6,5) notitle\n",
       number, 0.72 * cell * 1e3, number);
@@ -183,46 +187,46 @@ bool write_picture(const PictureSpec& picture, const std::vector<const CaseResul
       std::clamp(panel_width * (frame.y1 - frame.y0) / (frame.x1 - frame.x0), 60.0, 620.0);
   const double pitch = panel_height + 110, head = 60, height = head + rows * pitch + 10;
 
-  std::string script =
+  Script script(
       "set encoding utf8\nset border 3 lc rgb '#888888'\nset tics nomirror textcolor rgb '#444444' font "
       "',10'\n"
       "set size ratio -1\nset palette defined (0 '#352a87', 1 '#0f5cdd', 2 '#1481d6', 3 '#06a4ca', 4 "
       "'#2eb7a4', "
-      "5 '#87bf77', 6 '#d1bb59', 7 '#fec832', 8 '#f9fb0e')\n";
-  script += fmt::format("set xrange [{}:{}]\nset yrange [{}:{}]\nset cbrange [{}:{}]\n", frame.x0 * 1e3,
-                        frame.x1 * 1e3, frame.y0 * 1e3, frame.y1 * 1e3, low, high);
-  script +=
-      fmt::format("set cblabel '{} [{}]' font ',12' offset 1.2,0\n", field_title(picture.field), unit_name);
-  script += "unset colorbox\nset multiplot\n";
-  script +=
-      fmt::format("set label 10 {} at screen {}, screen {} left font ',17' textcolor rgb '#111111'\n",
-                  quoted(picture.title +
-                         (describe(cases[0]->point).empty() ? "" : "  (" + describe(cases[0]->point) + ")")),
-                  50 / width, 1 - 28 / height);
+      "5 '#87bf77', 6 '#d1bb59', 7 '#fec832', 8 '#f9fb0e')\n");
+  script.add("set xrange [{}:{}]\nset yrange [{}:{}]\nset cbrange [{}:{}]\n", frame.x0 * 1e3, frame.x1 * 1e3,
+             frame.y0 * 1e3, frame.y1 * 1e3, low, high);
+  script.add("set cblabel {} font ',12' offset 1.2,0\n",
+             Literal(fmt::format("{} [{}]", field_title(picture.field), unit_name)));
+  script.add("unset colorbox\nset multiplot\n");
+  script.add("set label 10 {} at screen {}, screen {} left font ',17' textcolor rgb '#111111'\n",
+             Literal(picture.title +
+                     (describe(cases[0]->point).empty() ? "" : "  (" + describe(cases[0]->point) + ")")),
+             50 / width, 1 - 28 / height);
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const int row = static_cast<int>(i) / columns, column = static_cast<int>(i) % columns;
     const double left = 50 + column * (panel_width + 60), bottom = height - head - (row + 1) * pitch + 50;
-    script += fmt::format(
+    script.add(
         "set lmargin at screen {}\nset rmargin at screen {}\nset bmargin at screen {}\nset tmargin at screen "
         "{}\n",
         left / width, (left + panel_width) / width, bottom / height, (bottom + panel_height) / height);
     const bool last = i + 1 == cases.size();
-    script +=
-        row + 1 == rows || static_cast<std::size_t>(i) + static_cast<std::size_t>(columns) >= cases.size()
-            ? "set xlabel 'x [mm]' font ',11' offset 0,0.4\n"
-            : "unset xlabel\n";
-    script += column == 0 ? "set ylabel 'y [mm]' font ',11' offset 1,0\n" : "unset ylabel\n";
+    if (row + 1 == rows || i + static_cast<std::size_t>(columns) >= cases.size())
+      script.add("set xlabel 'x [mm]' font ',11' offset 0,0.4\n");
+    else
+      script.add("unset xlabel\n");
+    if (column == 0)
+      script.add("set ylabel 'y [mm]' font ',11' offset 1,0\n");
+    else
+      script.add("unset ylabel\n");
     if (last)
-      script += fmt::format("set colorbox user origin screen {}, screen {} size screen {}, screen {}\n",
-                            1 - 100 / width, (height - head - rows * pitch + 50) / height, 16 / width,
-                            (rows * pitch - 110) / height);
-    script += panel(*cases[i], picture.field, frame, unit, static_cast<int>(i));
-    script += "unset label 10\n";
+      script.add("set colorbox user origin screen {}, screen {} size screen {}, screen {}\n", 1 - 100 / width,
+                 (height - head - rows * pitch + 50) / height, 16 / width, (rows * pitch - 110) / height);
+    script.add("{}unset label 10\n", panel(*cases[i], picture.field, frame, unit, static_cast<int>(i)));
   }
-  script += "unset multiplot\n";
-  const std::string terminal = fmt::format(
-      "pngcairo size {:.0f},{:.0f} font 'DejaVu Sans,11' noenhanced background '#ffffff'", width, height);
-  return run_gnuplot(terminal, script, image, why);
+  script.add("unset multiplot\n");
+  const Script terminal("pngcairo size {:.0f},{:.0f} font 'DejaVu Sans,11' noenhanced background '#ffffff'",
+                        width, height);
+  return gnuplot::draw(terminal, script, image, why);
 }
 
 }  // namespace taut::bench

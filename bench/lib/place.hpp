@@ -2,6 +2,7 @@
 /// \file
 /// Where in a scene file something stands.
 
+#include <lib/terminal.hpp>
 #include <memory>
 #include <string>
 #include <taut/core/error.hpp>
@@ -14,13 +15,14 @@ struct Place {
   unsigned line = 0, column = 0;
 
   std::string str() const {
-    return (file ? *file : std::string("scene")) + ':' + std::to_string(line) + ':' + std::to_string(column);
+    return (file ? visible(*file) : std::string("scene")) + ':' + std::to_string(line) + ':' +
+           std::to_string(column);
   }
 };
 
-/// \throws InputError "file:line:column: what".
+/// \throws InputError "file:line:column: what", made visible: `what()` would end at a NUL.
 [[noreturn]] inline void fail(const Place& place, const std::string& what) {
-  throw InputError(place.str() + ": " + what);
+  throw InputError(place.str() + ": " + visible(what));
 }
 
 }  // namespace taut::bench

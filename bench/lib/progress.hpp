@@ -24,7 +24,6 @@ class ProgressLine {
   void say(const std::string& line);
 
  private:
-  void clear();
   bool quiet_, terminal_;
   std::size_t items_, item_ = 0;
   std::string what_;

@@ -8,9 +8,10 @@
 namespace taut::bench {
 namespace {
 
-/// Row of the reference file whose key columns hold the sweep point's values.
+/// Row of the reference file whose key columns hold the sweep point's values. \throws InputError for two
 std::optional<std::size_t> find_row(const CsvTable& table, const ReferenceSpec& reference,
                                     const SweepPoint& point) {
+  std::optional<std::size_t> found;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     bool match = true;
     for (const auto& [name, column] : reference.keys) {
@@ -21,9 +22,12 @@ std::optional<std::size_t> find_row(const CsvTable& table, const ReferenceSpec& 
       match =
           match && cell.value && std::abs(*cell.value - wanted->second) <= 1e-9 * std::abs(wanted->second);
     }
-    if (match) return row;
+    if (match && found)
+      throw InputError(fmt::format("{}:{}: has the same keys as line {}", reference.file, table.line(row),
+                                   table.line(*found)));
+    if (match) found = row;
   }
-  return {};
+  return found;
 }
 
 CsvTable open(const ReferenceSpec& reference) {
@@ -55,7 +59,8 @@ std::optional<double> reference_value(const Scene& scene, const RunSpec& run, co
     if (!cell.value) return {};
     const double value = *cell.value * reference.scale;
     if (!std::isfinite(value))
-      throw InputError(fmt::format("{} times scale = {:g} is no finite number", *cell.value, reference.scale));
+      throw InputError(fmt::format("{}:{}: {:g} times the scale {:g} is no finite number", reference.file,
+                                   table.line(*row), *cell.value, reference.scale));
     return value;
   } catch (const InputError& error) {
     const std::string what = error.what();

@@ -10,13 +10,14 @@
 #include <lib/reference.hpp>
 #include <lib/report.hpp>
 #include <lib/scene_charts.hpp>
+#include <lib/text_table.hpp>
 
 namespace taut::bench {
 namespace {
 
 using Cells = std::vector<HtmlCell>;
 
-std::string percent(double error) { return fmt::format("{:+.2f} %", 100 * error); }
+std::string percent(double error) { return signed_percent(error, 2); }
 const char* name_of(Lattice kind) { return kind == Lattice::node_centred ? "node-centred" : "cell-centred"; }
 
 std::string duration(double seconds) {
@@ -179,7 +180,7 @@ void write_values(HtmlPage& page, const SceneReport& part, const ProbeSpec& prob
   }
   const auto shown = [&](double value, std::optional<double> truth) {
     std::string text = fmt::format("{:.4g}", value * factor);
-    if (truth && *truth != 0) text += fmt::format(" ({:+.1f} %)", 100 * (value / *truth - 1));
+    if (truth && *truth != 0) text += " (" + signed_percent(value / *truth - 1, 1) + ')';
     return text;
   };
   for (const SweepPoint& point : points) {
@@ -290,9 +291,10 @@ void add_chart(HtmlPage& page, const Chart& chart, const std::filesystem::path& 
       "quiet");
 }
 
-std::vector<std::string> write_report(const Report& report, const std::filesystem::path& out) {
-  std::vector<std::string> missing;
-  write_cases(report, out);
+namespace {
+
+void write_page(const Report& report, const std::filesystem::path& out, bool figures,
+                std::vector<std::string>& missing) {
   const bool one = report.scenes.size() == 1;
   HtmlPage page(one ? report.scenes[0].scene->title
                     : fmt::format("{}: {} scenes", report.executable, report.scenes.size()));
@@ -305,15 +307,19 @@ std::vector<std::string> write_report(const Report& report, const std::filesyste
                   report.threads, report.threads == 1 ? "" : "s",
                   report.quick ? ". This is the quick version (--quick): coarser, and with fewer cases" : ""),
       "quiet");
+  if (report.unfinished)
+    page.paragraph(fmt::format("The job was interrupted: {} of {} cases were not run.", report.unfinished,
+                               total + report.unfinished),
+                   "lead");
   for (const SceneReport& part : report.scenes) {
     if (!one) page.heading(2, part.scene->title);
     if (!part.scene->description.empty()) page.paragraph(part.scene->description);
     page.paragraph(verdict(part), "lead");
-    write_pictures(page, part, out, missing);
+    if (figures) write_pictures(page, part, out, missing);
     write_runs(page, part);
     write_health(page, part);
     write_automatic(page, part);
-    write_charts(page, part, out, missing);
+    if (figures) write_charts(page, part, out, missing);
     write_broken(page, part);
     for (const ProbeSpec& probe : part.scene->probes) write_values(page, part, probe);
     page.paragraph(fmt::format("Scene file: {}. The numbers are in results.csv (one row a quantity) and "
@@ -323,6 +329,16 @@ std::vector<std::string> write_report(const Report& report, const std::filesyste
                    "quiet");
   }
   write_file(out / "report.html", page.str());
+}
+
+}  // namespace
+
+std::vector<std::string> write_report(const Report& report, const std::filesystem::path& out) {
+  std::vector<std::string> missing;
+  write_cases(report, out);
+  // Drawing may take its time, or be interrupted: the numbers first.
+  write_page(report, out, false, missing);
+  write_page(report, out, true, missing);
   return missing;
 }
 

@@ -22,6 +22,7 @@ struct Report {
   bool quick = false;
   double wall_s = 0;
   std::vector<SceneReport> scenes;
+  std::size_t unfinished = 0;  ///< cases that were not run, for the job was interrupted
 };
 
 /// Writes a chart to OUT/charts and puts it on the page; without gnuplot a note stands there instead, and

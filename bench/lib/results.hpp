@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <taut/core/method.hpp>
@@ -22,27 +23,32 @@ struct Row {
   std::string quantity;
   std::optional<double> value, reference, error;
   std::string unit;
-  std::string status = "ok";  ///< ok, suspect (a health_ row says why), broke (value = time of failure [s]), skipped
+  /// ok; suspect (not to be trusted, a health_ row says why, or without a value); broke (no value; a row
+  /// `breakdown_time` says when); skipped
+  std::string status = "ok";
   std::optional<double> setup_s, loop_s, particle_steps_per_s, bytes_per_particle;
+  std::string label;                    ///< of the run
+  std::map<std::string, double> swept;  ///< values of what is swept and has no column above
 };
 
 /// Formulation, operators, kernel, support and precision; only the first where there are no pairs.
 void set_method(Row& row, const Method& method);
 
-/// "scene,formulation,…", in the order of the columns.
-std::string results_header();
+/// "scene,formulation,…,bytes_per_particle,label" and a column for each of `swept`.
+std::string results_header(const std::vector<std::string>& swept = {});
 /// One line without its end. Numbers keep what it takes to read the same double back.
-std::string results_line(const Row& row);
+std::string results_line(const Row& row, const std::vector<std::string>& swept = {});
 /// Value over reference less one, or their difference where `absolute` or the reference is zero.
 double error_of(double value, double reference, bool absolute);
-/// Replaces the file in one go. \throws RunError
+/// Replaces the file in one go, on the disk when it returns. Swept quantities of any row get a column, in the
+/// order of their names. \throws RunError
 void write_results(const std::filesystem::path& file, const std::vector<Row>& rows);
 
 /// What `write_results` wrote. \throws InputError "file:line: what" for a missing file, another header, or what is no
 /// number where one belongs.
 std::vector<Row> read_results(const std::filesystem::path& file);
 
-/// A swept value as part of a quantity's name: 1000 → "1000", -0.5 → "minus_0_5".
+/// A swept value as part of a quantity's name, to twelve digits: 1000 → "1000", -0.5 → "minus_0_5".
 std::string snake_number(double value);
 
 }  // namespace taut::bench

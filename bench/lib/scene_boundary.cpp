@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <lib/scene_keys.hpp>
 #include <lib/scene_parts.hpp>
 
@@ -68,9 +67,8 @@ BoundarySpec read_boundary(const Node& node, const SceneContext& context) {
   } else {
     boundary.force = reader.number("force", Range::any(), 0);
     boundary.direction = reader.vector("direction", context.dimension);
-    double length = 0;
-    for (const double c : boundary.direction) length = std::max(length, std::abs(c));
-    if (length == 0) reader.fail_at("direction", "must not be zero");
+    if (std::all_of(boundary.direction.begin(), boundary.direction.end(), [](double c) { return c == 0; }))
+      reader.fail_at("direction", "must not be zero");
   }
   return boundary;
 }

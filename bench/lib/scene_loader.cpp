@@ -11,6 +11,9 @@
 namespace taut::bench {
 namespace {
 
+/// Some hours of the smallest cases; a report of more cannot be read.
+constexpr int most_cases = 10'000;
+
 Range sweep_range(const std::string& key) {
   if (key == "nu") return {-1, 0.5, true, true};
   if (key == "load") return Range::any();
@@ -23,9 +26,9 @@ void read_head(const Node& node, Scene& scene) {
   scene.name = reader.text("name");
   for (const char c : scene.name)
     if (!(c >= 'a' && c <= 'z') && !(c >= '0' && c <= '9') && c != '_')
-      reader.fail_at("name", fmt::format("'{}' is not snake_case (a–z, 0–9, _)", scene.name));
+      reader.fail_at("name", fmt::format("'{}' is not snake_case (a–z, 0–9, _)", brief(scene.name)));
   scene.title = reader.text("title", scene.name);
-  scene.description = reader.text("description", "-");
+  scene.description = reader.prose("description", "-");
   if (scene.description == "-") scene.description.clear();
   scene.accuracy = reader.number("accuracy", Range{0, 1, true, false}, scene.accuracy);
   scene.dimension = static_cast<int>(reader.integer("dimension", 1, 3));
@@ -35,7 +38,17 @@ void read_sweep(const TableReader& top, Scene& scene) {
   if (!top.has("sweep")) return;
   const TableReader reader(top.require("sweep"), "sweep", keys_of("sweep"));
   for (const std::string& key : keys_of("sweep"))
-    if (reader.has(key)) scene.sweep.emplace_back(key, reader.numbers(key, sweep_range(key)));
+    if (reader.has(key)) {
+      scene.sweep.emplace_back(key, reader.numbers(key, sweep_range(key)));
+      reader.check_distinct(key, scene.sweep.back().second);
+    }
+  // Asked before the cases are listed: four lists of a few thousand are more than any memory.
+  double cases = static_cast<double>(scene.runs.size());
+  for (const auto& [key, values] : scene.sweep) cases *= static_cast<double>(values.size());
+  if (cases > most_cases)
+    fail(reader.place(),
+         fmt::format("[sweep] makes {:g} cases of {} runs, but {} is the most that a scene may have", cases,
+                     scene.runs.size(), most_cases));
   const auto swept = [&](const std::string& key) { return reader.has(key); };
   const auto loads = std::count_if(scene.boundaries.begin(), scene.boundaries.end(),
                                    [](const BoundarySpec& b) { return b.type == "load"; });
@@ -58,7 +71,7 @@ void check_labels(const Place& place, const std::string& what, const std::vector
   for (const RunSpec& run : scene.runs) labels.push_back(run.label);
   for (const std::string& label : wanted)
     if (std::find(labels.begin(), labels.end(), label) == labels.end())
-      fail(place, fmt::format("{}: no run is labelled '{}'; valid: {}", what, label, join(labels)));
+      fail(place, fmt::format("{}: no run is labelled '{}'; valid: {}", what, brief(label), join(labels)));
 }
 
 void apply_quick(const Node& node, Scene& scene, bool quick) {
@@ -67,6 +80,7 @@ void apply_quick(const Node& node, Scene& scene, bool quick) {
   for (const std::string& key : keys_of("sweep")) {
     if (!reader.has(key)) continue;
     const std::vector<double> values = reader.numbers(key, sweep_range(key));
+    reader.check_distinct(key, values);
     const auto swept = std::find_if(changed.sweep.begin(), changed.sweep.end(),
                                     [&](const auto& s) { return s.first == key; });
     if (swept != changed.sweep.end()) {

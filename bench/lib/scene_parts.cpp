@@ -28,6 +28,9 @@ TableReader variant_reader(const Node& node, const std::string& table, const std
   return TableReader(node, table, keys_of(table, variant));
 }
 
+/// Each is asked for each place of the lattice.
+constexpr std::size_t most_shapes = 2000;
+
 ShapeSpec read_shape(const Node& node, const SceneContext& context) {
   const TableReader reader = variant_reader(node, "geometry", "type");
   const std::size_t d = context.dimension;
@@ -62,6 +65,8 @@ ShapeSpec read_shape(const Node& node, const SceneContext& context) {
     shape.file = context.resolve(reader.text("file"));
   } else {
     const NodeArray& parts = reader.tables("of");
+    if (parts.size() > most_shapes)
+      reader.fail_at("of", fmt::format("lists {} shapes, but {} is the most", parts.size(), most_shapes));
     if (parts.size() < 2) reader.fail_at("of", fmt::format("a {} needs at least two shapes", shape.type));
     for (const Node& part : parts) {
       shape.of.push_back(read_shape(part, context));

@@ -102,7 +102,7 @@ ProbeSpec read_probe(const Node& node, const SceneContext& context) {
   probe.name = reader.text("name");
   for (const char c : probe.name)
     if (!(c >= 'a' && c <= 'z') && !(c >= '0' && c <= '9') && c != '_')
-      reader.fail_at("name", fmt::format("'{}' is not snake_case (a–z, 0–9, _)", probe.name));
+      reader.fail_at("name", fmt::format("'{}' is not snake_case (a–z, 0–9, _)", brief(probe.name)));
   read_component(reader, probe, context);
   if (reader.has("window")) {
     const std::vector<double> window = reader.vector("window", 2);

@@ -16,7 +16,8 @@ Method read_method(const TableReader& reader) {
   m.operators = reader.choice("operators", names().operators, m.operators);
   m.kernel = reader.choice("kernel", names().kernels, m.kernel);
   // Below one spacing no lattice particle has a neighbour; beyond ten a list no longer fits any memory.
-  m.support_dx = reader.number("support_dx", Range{1, 10, true, false}, m.support_dx);
+  m.support_dx =
+      reader.number("support_dx", Range{1, 10, true, false}, default_support(m.formulation, m.operators));
   m.neighbours = reader.choice("neighbours", names().neighbours, m.neighbours);
   m.pair_precision = pair_precision(reader.choice("pair_precision", pair_precision_names(), "automatic"));
   if (reader.has("zero_energy_control"))

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <lib/table_reader.hpp>
+#include <map>
 
 namespace taut::bench {
 
@@ -27,7 +28,7 @@ TableReader::TableReader(const Node& node, std::string table, const std::vector<
   if (!values_) fail(node.place, fmt::format("[{}] must be a table, but is {}", table_, node.kind()));
   for (const Node& entry : values_->entries)
     if (std::find(keys.begin(), keys.end(), entry.key) == keys.end())
-      fail(entry.place, fmt::format("[{}] has no key '{}'; valid: {}", table_, entry.key, join(keys)));
+      fail(entry.place, fmt::format("[{}] has no key '{}'; valid: {}", table_, brief(entry.key), join(keys)));
 }
 
 const Node* TableReader::find(const std::string& key) const {
@@ -46,12 +47,39 @@ void TableReader::fail_at(const std::string& key, const std::string& what) const
   fail(node ? node->place : node_.place, fmt::format("[{}] {}: {}", table_, key, what));
 }
 
-std::string TableReader::text(const std::string& key) const {
-  const Node& node = require(key);
+std::string TableReader::text_of(const Node& node, const std::string& key, std::size_t most,
+                                 bool lines) const {
   const auto* text = node.as<std::string>();
-  if (!text) fail_at(key, "must be a string, but is " + node.kind());
-  if (text->empty()) fail_at(key, "must not be empty");
+  const auto refuse = [&](const std::string& what) {
+    fail(node.place, fmt::format("[{}] {}: {}", table_, key, what));
+  };
+  if (!text) refuse("must be a string, but is " + node.kind());
+  if (text->empty()) refuse("must not be empty");
+  if (text->size() > most)
+    refuse(fmt::format("has {} bytes, but may have {} at most: '{}'", text->size(), most, brief(*text)));
+  std::string rest = *text;
+  if (lines) std::erase_if(rest, [](char c) { return c == '\n' || c == '\r' || c == '\t'; });
+  if (visible(rest) != rest || (!lines && rest.find_first_of("\n\t") != rest.npos))
+    refuse(fmt::format("holds a control character: '{}'", brief(*text)));
   return *text;
+}
+
+std::string TableReader::text(const std::string& key) const { return text_of(require(key), key, 200, false); }
+
+std::string TableReader::prose(const std::string& key, const std::string& fallback) const {
+  return has(key) ? text_of(require(key), key, 20000, true) : fallback;
+}
+
+void TableReader::check_distinct(const std::string& key, const std::vector<double>& values) const {
+  std::map<std::string, double> taken;
+  for (const double value : values) {
+    const auto [found, added] = taken.insert({fmt::format("{:.12g}", value + 0.0), value});
+    if (!added)
+      fail_at(key, found->second == value
+                       ? fmt::format("lists {} twice", value)
+                       : fmt::format("lists {} and {}, which are the same to twelve digits", found->second,
+                                     value));
+  }
 }
 
 std::string TableReader::text(const std::string& key, const std::string& fallback) const {
@@ -61,7 +89,7 @@ std::string TableReader::text(const std::string& key, const std::string& fallbac
 std::string TableReader::choice(const std::string& key, const std::vector<std::string>& valid) const {
   std::string name = text(key);
   if (std::find(valid.begin(), valid.end(), name) == valid.end())
-    fail_at(key, fmt::format("unknown name '{}'; valid: {}", name, join(valid)));
+    fail_at(key, fmt::format("unknown name '{}'; valid: {}", brief(name), join(valid)));
   return name;
 }
 
@@ -134,10 +162,7 @@ std::vector<std::string> TableReader::texts(const std::string& key) const {
   if (array->empty()) fail_at(key, "must list at least one name");
   std::vector<std::string> values;
   for (const Node& entry : *array) {
-    const auto* value = entry.as<std::string>();
-    if (!value)
-      fail(entry.place, fmt::format("[{}] {}: must be a string, but is {}", table_, key, entry.kind()));
-    values.push_back(*value);
+    values.push_back(text_of(entry, key, 200, false));
   }
   return values;
 }

@@ -37,8 +37,13 @@ class TableReader {
   const Node& require(const std::string& key) const;
   bool has(const std::string& key) const { return find(key) != nullptr; }
 
+  /// One line, not empty, of up to 200 bytes, without control characters.
   std::string text(const std::string& key) const;
   std::string text(const std::string& key, const std::string& fallback) const;
+  /// Text with line breaks, of up to 20000 bytes.
+  std::string prose(const std::string& key, const std::string& fallback) const;
+  /// Twelve digits tell numbers apart in names and tables. \throws InputError for two that are the same
+  void check_distinct(const std::string& key, const std::vector<double>& values) const;
   std::string choice(const std::string& key, const std::vector<std::string>& valid) const;
   std::string choice(const std::string& key, const std::vector<std::string>& valid,
                      const std::string& fallback) const;
@@ -59,6 +64,7 @@ class TableReader {
   [[noreturn]] void fail_at(const std::string& key, const std::string& what) const;
 
  private:
+  std::string text_of(const Node& node, const std::string& key, std::size_t most, bool lines) const;
   double number_of(const Node& node, const std::string& key, const Range& range) const;
 
   const Node& node_;

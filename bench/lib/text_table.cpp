@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <lib/text_table.hpp>
 
@@ -11,6 +13,12 @@ std::size_t width(const std::string& text) {
 }
 
 }  // namespace
+
+std::string signed_percent(double error, int digits) {
+  std::string text = fmt::format("{:+.{}f}", 100 * error, digits);
+  if (text.find_first_not_of("+-0.") == text.npos) text.erase(0, 1);
+  return text + " %";
+}
 
 std::string plain(const TextTable& table) {
   std::vector<std::size_t> widths;

@@ -17,4 +17,7 @@ struct TextTable {
 /// In plain text, columns lined up.
 std::string plain(const TextTable& table);
 
+/// A relative error, "+1.25 %"; without a sign where it rounds to zero.
+std::string signed_percent(double error, int digits);
+
 }  // namespace taut::bench

@@ -5,9 +5,12 @@
 #include <chrono>
 #include <cmath>
 #include <lib/build.hpp>
+#include <lib/files.hpp>
 #include <lib/gnuplot.hpp>
 #include <lib/progress.hpp>
 #include <lib/results.hpp>
+#include <lib/signals.hpp>
+#include <lib/terminal.hpp>
 #include <lib/tolerance.hpp>
 
 namespace taut::bench {
@@ -44,6 +47,7 @@ void run_sample(const Scene& scene, Candidate& candidate, double dx, bool verifi
     how.progress = [&](std::int64_t steps, double, double fraction) {
       progress.update(steps, fraction);
       gave_up = seconds_since(start) > budget;
+      if (asked_to_stop()) throw Interrupted(asked_to_stop(), "interrupted");
       return !gave_up;
     };
     try {
@@ -201,14 +205,14 @@ std::string ToleranceResult::verdict() const {
 std::vector<Row> ToleranceResult::rows(int threads) const {
   std::vector<Row> all;
   const auto add = [&](const CaseResult& result, const std::string& prefix) {
-    std::vector<Row> rows = result.rows(threads);  // one a probe first
+    std::vector<Row> rows = result.rows(threads);  // one a probe, then others
     SweepPoint point = result.point;
     point.erase("dx");
     for (std::size_t i = 0; i < rows.size(); ++i) {
       Row& row = rows[i];
       if (row.status == "skipped") continue;
-      const bool of_probe = i < scene->probes.size();  // the others are of health
-      const auto truth = of_probe ? truths.of.find({&scene->probes[i], point}) : truths.of.end();
+      const auto truth =
+          i < scene->probes.size() ? truths.of.find({&scene->probes[i], point}) : truths.of.end();
       if (row.status != "broke" && row.value && truth != truths.of.end() && truth->second.votes > 0) {
         row.reference = truth->second.value;
         row.error = error_of(*row.value, *row.reference, false);
@@ -258,24 +262,34 @@ ToleranceResult search(const Scene& scene, double tolerance, bool quiet) {
 
 void run_tolerance(const CommonOptions& common, const std::vector<Scene>& scenes, double tolerance) {
   for (const Scene& scene : scenes) check_searchable(scene);
+  const OutputFolder folder(common.out);
+  const GracefulStop graceful;
   ProgressLine say(common.quiet, 1);
   std::vector<ToleranceResult> results;
   std::vector<Row> rows;
-  std::string missed;
+  std::string missed, interrupted;
   for (const Scene& scene : scenes) {
-    results.push_back(search(scene, tolerance, common.quiet));
+    try {
+      results.push_back(search(scene, tolerance, common.quiet));
+    } catch (const Interrupted&) {
+      interrupted = fmt::format("interrupted: {} of {} scenes are done; their numbers are in {}",
+                                results.size(), scenes.size(), (common.out / "results.csv").string());
+      break;
+    }
     const ToleranceResult& r = results.back();
     for (Row& row : r.rows(common.threads)) rows.push_back(std::move(row));
     write_results(common.out / "results.csv", rows);
     say.say("\n" + plain_summary(r) + '\n' + r.verdict());
     if (!r.met) missed += (missed.empty() ? "" : "\n") + r.verdict();
   }
+  if (results.empty()) throw Interrupted(asked_to_stop(), interrupted);
   const std::vector<std::string> missing = write_tolerance_page(results, common);
-  if (!gnuplot_available())
+  if (!gnuplot::available())
     say.say("gnuplot was not found: charts are left as tables (charts/*.csv).");
   else
-    for (const std::string& what : missing) fmt::print(stderr, "taut-compare: cannot draw {}\n", what);
+    for (const std::string& what : missing) print_error("taut-compare: cannot draw " + what + '\n');
   say.say("Look at " + (common.out / "report.html").string());
+  if (!interrupted.empty()) throw Interrupted(asked_to_stop(), interrupted);
   if (!missed.empty()) throw RunError(missed);
 }
 

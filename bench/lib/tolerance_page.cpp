@@ -77,16 +77,15 @@ TextTable values(const ToleranceResult& r) {
           if (!m.value) continue;
           const auto truth = r.truths.of.find({m.probe, point});
           const bool has = truth != r.truths.of.end();
-          table.rows.push_back(
-              {{c.run.label + (s.verification ? ", verification" : ""), ""},
-               number(s.dx > 0 ? fmt::format("{:.4g}", s.dx * 1e3) : "–"),
-               {m.probe->name + (point.empty() ? "" : ", " + describe(point)), "wrap"},
-               number(fmt::format("{:.5g} {}", *m.value, m.probe->unit())),
-               number(has ? fmt::format("{:.5g}{}", truth->second.value,
-                                        truth->second.votes ? " (extrapolated)" : "")
-                          : "–"),
-               number(has ? fmt::format("{:+.2f} %", 100 * (*m.value / truth->second.value - 1)) : "–"),
-               number(fmt::format("{:.3g}", result.setup_s + result.loop_s))});
+          table.rows.push_back({{c.run.label + (s.verification ? ", verification" : ""), ""},
+                                number(s.dx > 0 ? fmt::format("{:.4g}", s.dx * 1e3) : "–"),
+                                {m.probe->name + (point.empty() ? "" : ", " + describe(point)), "wrap"},
+                                number(fmt::format("{:.5g} {}", *m.value, m.probe->unit())),
+                                number(has ? fmt::format("{:.5g}{}", truth->second.value,
+                                                         truth->second.votes ? " (extrapolated)" : "")
+                                           : "–"),
+                                number(has ? signed_percent(*m.value / truth->second.value - 1, 2) : "–"),
+                                number(fmt::format("{:.3g}", result.setup_s + result.loop_s))});
         }
       }
   return table;

@@ -2,6 +2,7 @@
 #include <cstdlib>
 #include <lib/files.hpp>
 #include <lib/gnuplot.hpp>
+#include <lib/terminal.hpp>
 #include <scaling/job.hpp>
 #include <scaling/page.hpp>
 #include <scaling/scaling.hpp>
@@ -60,7 +61,7 @@ void run_scaling(const CommonOptions& common, const ScalingOptions& options) {
   for (const int neighbours : job.neighbours) neighbourhood<3>(neighbours, Arrangement::lattice);
   if (!std::getenv("OMP_PROC_BIND"))
     progress.say("Steadier with OMP_PROC_BIND=true in the environment, and with nothing else running.");
-  make_folder(common.out);
+  const OutputFolder folder(common.out);
   const std::string machine = machine_description();
   write_file(common.out / "machine.txt", machine + '\n');
   for (const auto& [name, measure] : parts()) {
@@ -71,10 +72,10 @@ void run_scaling(const CommonOptions& common, const ScalingOptions& options) {
     write_results(common.out / "results.csv", rows);
   }
   const std::vector<std::string> missing = write_scaling_report(rows, machine, common.quick, common.out);
-  if (!gnuplot_available())
+  if (!gnuplot::available())
     progress.say("gnuplot was not found: charts are left as tables (charts/*.csv).");
   else
-    for (const std::string& what : missing) fmt::print(stderr, "taut-scaling: cannot draw {}\n", what);
+    for (const std::string& what : missing) print_error("taut-scaling: cannot draw " + what + '\n');
   progress.say("Look at " + (common.out / "report.html").string());
 }
 

@@ -1,6 +1,7 @@
 #include <taut/core/derived.hpp>
 #include <taut/core/error.hpp>
 #include <taut/core/simulation.hpp>
+#include <taut/internal/output_file.hpp>
 #include <taut/internal/simulation_impl.hpp>
 #include <taut/internal/vtkhdf.hpp>
 
@@ -8,8 +9,8 @@
 #include <hdf5.h>
 
 #include <cstdint>
-#include <filesystem>
 #include <numeric>
+#include <utility>
 #endif
 
 namespace taut {
@@ -18,17 +19,50 @@ namespace internal {
 #ifdef TAUT_HAS_HDF5
 namespace {
 
+/// What the system said of the call that failed ("No space left on device"), from HDF5's own record of it;
+/// empty where it says nothing.
+std::string reason() {
+  std::string found;
+  H5Ewalk2(
+      H5E_DEFAULT, H5E_WALK_UPWARD,
+      [](unsigned, const H5E_error2_t* entry, void* out) -> herr_t {
+        auto& text = *static_cast<std::string*>(out);
+        const std::string_view says = entry->desc ? entry->desc : "";
+        constexpr std::string_view before = "error message = '";
+        if (const std::size_t at = says.find(before); text.empty() && at != says.npos) {
+          const std::size_t begin = at + before.size();
+          text = says.substr(begin, says.find('\'', begin) - begin);
+        }
+        return 0;
+      },
+      &found);
+  return found;
+}
+
+[[noreturn]] void fail(const char* what) {
+  const std::string why = reason();
+  throw RunError(std::string("HDF5 cannot ") + what + (why.empty() ? "" : ": " + why));
+}
+
+void check(herr_t status, const char* what) {
+  if (status < 0) fail(what);
+}
+
 /// An HDF5 identifier, closed at the end of its scope.
 class Handle {
  public:
   using Close = herr_t (*)(hid_t);
-  Handle(hid_t id, Close close, const char* what) : id_(id), close_(close) {
-    if (id < 0) throw RunError(std::string("HDF5 cannot ") + what);
+  Handle(hid_t id, Close closer, const char* what) : id_(id), close_(closer) {
+    if (id < 0) fail(what);
   }
   Handle(const Handle&) = delete;
   Handle& operator=(const Handle&) = delete;
-  ~Handle() { close_(id_); }
+  ~Handle() {
+    if (id_ >= 0) close_(id_);
+  }
   operator hid_t() const { return id_; }
+  /// Closes now, for what only shows then: data that wait in memory for a disk that is full.
+  void close(const char* what) { check(close_(std::exchange(id_, -1)), what); }
 
  private:
   hid_t id_;
@@ -51,16 +85,20 @@ class QuietErrors {
   void* data_ = nullptr;
 };
 
-void check(herr_t status, const char* what) {
-  if (status < 0) throw RunError(std::string("HDF5 cannot ") + what);
+/// Without the time of making, so that equal runs write equal files.
+hid_t untimed(hid_t kind) {
+  const hid_t properties = H5Pcreate(kind);
+  H5Pset_obj_track_times(properties, false);
+  return properties;
 }
 
 void write_dataset(hid_t group, const std::string& name, hid_t type, std::size_t rows, int columns,
                    const void* data) {
   const hsize_t size[2] = {rows, static_cast<hsize_t>(columns)};
   const Handle space(H5Screate_simple(columns > 1 ? 2 : 1, size, nullptr), H5Sclose, "make a data space");
-  const Handle set(H5Dcreate2(group, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-                   H5Dclose, "make a data set");
+  const Handle how(untimed(H5P_DATASET_CREATE), H5Pclose, "make properties");
+  const Handle set(H5Dcreate2(group, name.c_str(), type, space, H5P_DEFAULT, how, H5P_DEFAULT), H5Dclose,
+                   "make a data set");
   if (rows) check(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "write a data set");
 }
 
@@ -82,12 +120,10 @@ void write_header(hid_t group) {
   check(H5Awrite(type, text, name.data()), "write an attribute");
 }
 
-void write_file(const std::string& file, std::span<const double> xyz, std::span<const PointArray> arrays) {
+void write_contents(hid_t out, std::span<const double> xyz, std::span<const PointArray> arrays) {
   const std::size_t n = xyz.size() / 3;
-  const Handle out(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose,
-                   "create the file");
-  const Handle root(H5Gcreate2(out, "VTKHDF", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose,
-                    "make a group");
+  const Handle how(untimed(H5P_GROUP_CREATE), H5Pclose, "make properties");
+  const Handle root(H5Gcreate2(out, "VTKHDF", H5P_DEFAULT, how, H5P_DEFAULT), H5Gclose, "make a group");
   write_header(root);
 
   const auto count = static_cast<std::int64_t>(n);
@@ -103,11 +139,17 @@ void write_file(const std::string& file, std::span<const double> xyz, std::span<
   const std::vector<unsigned char> types(n, vtk_vertex);
   write_dataset(root, "Types", H5T_NATIVE_UCHAR, n, 1, types.data());
 
-  const Handle points(H5Gcreate2(root, "PointData", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose,
-                      "make a group");
+  const Handle points(H5Gcreate2(root, "PointData", H5P_DEFAULT, how, H5P_DEFAULT), H5Gclose, "make a group");
   write_dataset(points, "id", H5T_NATIVE_INT64, n, 1, indices.data());
   for (const PointArray& array : arrays)
     write_dataset(points, array.name, H5T_NATIVE_DOUBLE, n, array.components, array.values.data());
+}
+
+void write_file(const std::string& file, std::span<const double> xyz, std::span<const PointArray> arrays) {
+  Handle out(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose, "create the file");
+  write_contents(out, xyz, arrays);
+  check(H5Fflush(out, H5F_SCOPE_GLOBAL), "write the file");
+  out.close("close the file");
 }
 
 }  // namespace
@@ -115,13 +157,15 @@ void write_file(const std::string& file, std::span<const double> xyz, std::span<
 void write_vtkhdf_points(const std::string& file, std::span<const double> xyz,
                          std::span<const PointArray> arrays) {
   const QuietErrors quiet;
-  const std::string temporary = file + ".tmp";
-  std::error_code ignored;
+  OutputFile out(file);
   try {
-    write_file(temporary, xyz, arrays);
-    std::filesystem::rename(temporary, file);
+    // HDF5 1.10 crashes at the program's end where a file could not be written to its own.
+    std::size_t bytes = sizeof(double) * xyz.size() + 25 * (xyz.size() / 3) + (std::size_t{1} << 16);
+    for (const PointArray& array : arrays) bytes += sizeof(double) * array.values.size();
+    out.reserve(bytes);
+    write_file(out.temporary(), xyz, arrays);
+    out.commit();
   } catch (const std::exception& error) {
-    std::filesystem::remove(temporary, ignored);
     throw RunError(file + ": cannot write the fields: " + error.what());
   }
 }

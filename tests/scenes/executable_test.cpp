@@ -192,10 +192,13 @@ formulation = "tl_displacement"
   CAPTURE(outcome.err);
   REQUIRE(outcome.status == 0);
   const auto rows = probe_rows(folder() / "broken/results.csv");
-  REQUIRE(rows.size() == 4);
+  REQUIRE(rows.size() == 5);
   CHECK(rows[1].find(",ok,") != std::string::npos);
-  CHECK(rows[2].find(",s,broke,") != std::string::npos);
-  CHECK(rows[3].find(",ok,") != std::string::npos);
+  CHECK(rows[2].find(",tip_ux,,,,m,broke,") != std::string::npos);  // a time is no displacement
+  CHECK(rows[3].find(",breakdown_time,") != std::string::npos);
+  CHECK(rows[3].find(",s,ok,") != std::string::npos);
+  CHECK(rows[3].ends_with(",breaks"));
+  CHECK(rows[4].find(",ok,") != std::string::npos);
   CHECK(outcome.out.find("breaks: BROKE at t = ") != std::string::npos);
   CHECK(outcome.out.find("particle") != std::string::npos);
   const std::string report = read_file(folder() / "broken/report.html");

@@ -63,6 +63,19 @@ struct Mistake {
   bool loader_finds = true;  ///< false: only building the bodies shows it
 };
 
+inline std::string repeated(const std::string& text, int times) {
+  std::string all;
+  for (int i = 0; i < times; ++i) all += text;
+  return all;
+}
+
+/// "[1, 2, …]".
+inline std::string numbers(int count) {
+  std::string all;
+  for (int i = 1; i <= count; ++i) all += (i > 1 ? ", " : "[") + std::to_string(i);
+  return all + ']';
+}
+
 inline const std::vector<Mistake>& mistakes() {
   static const std::vector<Mistake> all = {
       {"unknown_formulation",
@@ -163,8 +176,33 @@ inline const std::vector<Mistake>& mistakes() {
       {"step_below_the_resolution_of_time",
        "mode = \"relax\"\ntolerance = 1e-4",
        "mode = \"dynamic\"\nduration = 1e-3\nmax_step = 1e-20",
+       30,  // found before bodies are built, by its number of steps
+       {"0.001 s would take about 1e+17 steps"},
+       false},
+      {"control_characters",
+       "label = \"total\"",
+       "label = \"\\u001b[31m\"",
        41,
-       {"never reach 0.001 s"},
+       {"control character", "\\u001b"}},
+      {"name_with_nul", "\"small\"", "\"a\\u0000b\"", 2, {"control character", "a\\u0000b"}},
+      {"name_too_long", "\"small\"", '"' + std::string(250, 'a') + '"', 2, {"has 250 bytes", "200 at most"}},
+      {"deep_key",
+       "[solve]",
+       "[sweep]\n" + repeated("a.", 30000) + "a = 1\n[solve]",
+       31,
+       {"a key of more than 17 parts"}},
+      {"long_key", "dx = 0.0125", std::string(100000, 'k') + " = 1", 11, {"has no key 'kkk", "bytes"}},
+      {"swept_twice", "[solve]", "[sweep]\nnu = [0.3, 0.1, 0.30]\n[solve]", 31, {"nu: lists 0.3 twice"}},
+      {"too_many_cases",
+       "[solve]",
+       "[sweep]\nload = " + numbers(20000) + "\nregion_density = " + numbers(20000) + "\n[solve]",
+       30,
+       {"the most that a scene may have"}},
+      {"labels_of_one_file",
+       "support_dx = 1.5",
+       "support_dx = 1.5\n[[run]]\nlabel = \"Total!\"\nformulation = \"tl_displacement\"",
+       46,
+       {"both be named 'small_total'", "bad.toml:40:"},
        false},
       {"missing_reference_file",
        "at = [0.2, 0.025]",

@@ -39,16 +39,31 @@ TEST_CASE("results have the columns of the contract, in its order") {
   CHECK(results_header() ==
         "scene,formulation,operators,material,kernel,support_dx,dx,particles,pairs,threads,precision,"
         "integrator,steps,time,quantity,"
-        "value,reference,error,unit,status,setup_s,loop_s,particle_steps_per_s,bytes_per_particle");
+        "value,reference,error,unit,status,setup_s,loop_s,particle_steps_per_s,bytes_per_particle,label");
   Row row;
   row.scene = "truss";
   row.quantity = "tip, \"ux\"";
   row.value = 0.1;
   row.particles = 12;
   const std::string line = results_line(row);
-  CHECK(line == "truss,,,,,,,12,,,,,,,\"tip, \"\"ux\"\"\",0.1,,,,ok,,,,");
+  CHECK(line == "truss,,,,,,,12,,,,,,,\"tip, \"\"ux\"\"\",0.1,,,,ok,,,,,");
   const std::string header = results_header();
-  CHECK(std::count(header.begin(), header.end(), ',') == 23);
+  CHECK(std::count(header.begin(), header.end(), ',') == 24);
+  CHECK(results_header({"load", "nu"}) == header + ",load,nu");
+}
+
+TEST_CASE("labels and swept values have columns of their own, and are read back") {
+  Row first, second;
+  first.label = "a, \"b\"";
+  first.swept = {{"nu", 0.4999999}};
+  second.swept = {{"load", -3000}};
+  write_results(scratch("rows.csv"), {first, second});
+  CHECK(read_file(scratch("rows.csv")).starts_with(results_header({"load", "nu"}) + '\n'));
+  const std::vector<Row> rows = read_results(scratch("rows.csv"));
+  REQUIRE(rows.size() == 2);
+  CHECK(rows[0].label == "a, \"b\"");
+  CHECK(rows[0].swept == first.swept);
+  CHECK(rows[1].swept == second.swept);
 }
 
 TEST_CASE("swept values make snake_case names") {
@@ -58,6 +73,7 @@ TEST_CASE("swept values make snake_case names") {
   CHECK(snake_number(0) == "0");
   CHECK(snake_number(8e9) == "8000000000");
   CHECK(snake_number(1e-7) == "1e_minus_07");
+  CHECK(snake_number(0.4999999) != snake_number(0.49999995));
 }
 
 TEST_CASE("errors are relative unless they cannot be") {
@@ -89,6 +105,13 @@ TEST_CASE("tables that hold no numbers are refused with file and line") {
         std::string::npos);
   CHECK(csv_message("a,b\n1,two\n").find("'two'") != std::string::npos);
   CHECK(csv_message("# nothing\n").find("no header") != std::string::npos);
+  CHECK(csv_message("a,b,a\n1,2,3\n").find("table.csv:1: has two columns 'a'") != std::string::npos);
+  CHECK(csv_message("a\n" + std::string(100000, 'x') + '\n').size() < 400);
+}
+
+TEST_CASE("spreadsheets put a byte order mark before the header") {
+  std::ofstream(scratch("bom.csv")) << "\xef\xbb\xbfload,ux\n1,2\n";
+  CHECK(CsvTable(scratch("bom.csv")).column("load") == 0);
 }
 
 TEST_CASE("files are whole or not there") {
