@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/SparseCholesky>
-#include <cmath>
 #include <taut/boundary/held_points.hpp>
 #include <taut/core/error.hpp>
 #include <utility>
@@ -12,8 +11,7 @@ template <int D>
 struct HeldPoints<D>::System {
   Eigen::SparseMatrix<double> from_points;                     // M^-1 C^T, a column a point
   std::vector<Index> particles;                                // of its rows
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors;  // of C M^-1 C^T, of unit diagonal
-  Eigen::VectorXd scale;
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors;  // of C M^-1 C^T
 };
 
 template <int D>
@@ -45,7 +43,7 @@ void HeldPoints<D>::factor(const Field& mass, const std::vector<char>& fixed) {
   system_ = std::make_unique<System>();
   row_point_.clear();
   std::vector<Index> column(fixed.size(), no_particle);
-  std::vector<Eigen::Triplet<double>> entries;  // of C M^-1/2
+  std::vector<Eigen::Triplet<double>> entries;  // of C
   for (std::size_t k = 0; k < points_.size(); ++k) {
     bool free = false;
     for (const auto& term : points_[k].terms) {
@@ -57,7 +55,7 @@ void HeldPoints<D>::factor(const Field& mass, const std::vector<char>& fixed) {
         system_->particles.push_back(term.particle);
       }
       entries.emplace_back(static_cast<int>(row_point_.size()), column[i],
-                           term.weight / std::sqrt(mass.component(0)[i]));
+                           term.weight);
     }
     if (free) row_point_.push_back(k);
   }
@@ -66,28 +64,27 @@ void HeldPoints<D>::factor(const Field& mass, const std::vector<char>& fixed) {
   const auto particles = static_cast<Eigen::Index>(system_->particles.size());
   Eigen::SparseMatrix<double> C(points, particles);
   C.setFromTriplets(entries.begin(), entries.end());
-  Eigen::SparseMatrix<double> normal = C * C.transpose();
-  system_->scale = normal.diagonal().cwiseSqrt().cwiseInverse();
-  normal = system_->scale.asDiagonal() * normal * system_->scale.asDiagonal();
-  system_->factors.compute(normal);
-  constexpr double redundant = 1e-10;  // pivots of independent rows are of the order of 1
-  if (system_->factors.info() != Eigen::Success || !(system_->factors.vectorD().minCoeff() > redundant))
-    throw InputError(fmt::format(
-        "the {} points held on the boundary do not move independently: where walls meet, or in a body one "
-        "particle thick, they hold the same particles twice. Hold fewer of them, or refine dx there",
-        points));
-  Eigen::VectorXd root(particles);
+  // No roots: results are the same bits in units that differ by powers of two.
+  Eigen::VectorXd per_mass(particles);
   for (Eigen::Index c = 0; c < particles; ++c)
-    root[c] = 1 / std::sqrt(mass.component(0)[system_->particles[static_cast<std::size_t>(c)]]);
-  system_->from_points = root.asDiagonal() * Eigen::SparseMatrix<double>(C.transpose());
+    per_mass[c] = 1 / mass.component(0)[system_->particles[static_cast<std::size_t>(c)]];
+  system_->from_points = per_mass.asDiagonal() * Eigen::SparseMatrix<double>(C.transpose());
+  const Eigen::SparseMatrix<double> normal = C * system_->from_points;
+  system_->factors.compute(normal);
+  constexpr double redundant = 1e-10;  // pivots of independent rows are of the order of the diagonal
+  if (system_->factors.info() != Eigen::Success ||
+      !(system_->factors.vectorD().minCoeff() > redundant * normal.diagonal().maxCoeff()))
+    throw InputError(
+        fmt::format("the {} points held on the boundary do not move independently: where walls meet, or in a body one "
+                    "particle thick, they hold the same particles twice. Hold fewer of them, or refine dx there",
+                    points));
 }
 
 template <int D>
 void HeldPoints<D>::correct(const std::vector<double>& defect, double* values) const {
   if (defect.empty()) return;
   const Eigen::Map<const Eigen::VectorXd> right(defect.data(), static_cast<Eigen::Index>(defect.size()));
-  const Eigen::VectorXd force =
-      system_->scale.cwiseProduct(system_->factors.solve(system_->scale.cwiseProduct(right)));
+  const Eigen::VectorXd force = system_->factors.solve(right);
   const Eigen::VectorXd change = system_->from_points * force;
   for (std::size_t c = 0; c < system_->particles.size(); ++c)
     values[system_->particles[c]] += change[static_cast<Eigen::Index>(c)];

@@ -89,7 +89,6 @@ void add_spurious_forces(const Particles<D>& p, const std::vector<bool>& surface
     const auto i = static_cast<std::size_t>(a);
     if (surface[i]) {
       if (p.B.empty()) continue;
-      if (!p.B[i].allFinite()) continue;
       const double off = (force.template vec<D>(i) + p.B[i]).squaredNorm();
       faces += off;
       areas += p.B[i].squaredNorm();

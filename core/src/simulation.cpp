@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <taut/core/auto_method.hpp>
 #include <taut/core/error.hpp>
 #include <taut/core/kernel.hpp>
@@ -386,7 +385,6 @@ void Simulation<D>::prepare() {
   const MaterialsMeet meet = materials_meet(s.method.formulation);
   if (interfaces) interfaces->straighten(s.cloud);
   if (needs_areas(s.method.operators) && s.planes.empty()) enclose(s.cloud);
-  const bool found = !areas_known && !s.cloud.facets.empty();
   open_facets_on<D>(s.planes, s.cloud);
   const double widest =
       s.cloud.spacing.empty() ? s.cloud.dx : *std::max_element(s.cloud.spacing.begin(), s.cloud.spacing.end());
@@ -409,14 +407,6 @@ void Simulation<D>::prepare() {
     if (!on.empty()) s.constraints.fix(std::move(on), plane.axis);
   }
   s.constraints.finish(s.particles.m);
-  if (found) {
-    // Where only points and volumes are known, walls hold particles, not the surface that was found beyond them: a
-    // constant stress is taken up there, whatever forces it makes.
-    const std::vector<std::uint8_t> held = s.constraints.held(s.particles.n);
-    for (std::size_t i = 0; i < held.size(); ++i)
-      for (int d = 0; d < D; ++d)
-        if (held[i] >> d & 1) s.particles.B[i][d] = std::numeric_limits<double>::quiet_NaN();
-  }
   if (s.initial_displacement)
     for (Index i = 0; i < s.particles.n; ++i)
       s.particles.u.template set_vec<D>(i, s.initial_displacement(s.particles.reference_position(i)));

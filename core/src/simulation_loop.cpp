@@ -112,6 +112,14 @@ void notify(SimulationImpl<D>& s) {
     }
 }
 
+// Whether displacements and velocities are small enough to be computed with.
+template <int D>
+bool has_numbers(const Particles<D>& p) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(p.n); ++i)
+    if (!std::isfinite(p.u.template vec<D>(i).squaredNorm() + p.v.template vec<D>(i).squaredNorm())) return false;
+  return true;
+}
+
 // No force is applied and no prescribed displacement changes, now or later.
 template <int D>
 bool is_left_alone(const SimulationImpl<D>& s, const std::vector<double>& times) {
@@ -173,7 +181,7 @@ RunResult integrate(SimulationImpl<D>& s, Integrator& integrator, double duratio
     if (options.max_step > 0) bound = std::min(bound, options.max_step);
     double dt = s.step_control.next(bound);
     if (!advances(end, dt)) {
-      loop.give_up(std::isfinite(dt) ? "step too small to advance time" : "not a number");
+      loop.give_up(std::isfinite(dt) && has_numbers(s.particles) ? "step too small to advance time" : "not a number");
       break;
     }
     // No sliver of a step that rounding has left.
@@ -221,7 +229,7 @@ RunResult find_equilibrium(SimulationImpl<D>& s, const RelaxOptions& options) {
   while (!stopped && result.steps < options.max_steps && loop.intact()) {
     const double dt = options.cfl * s.formulation->stable_step();
     if (!(dt > 0) || !std::isfinite(dt)) {
-      loop.give_up(dt == 0 ? "step too small to advance time" : "not a number");
+      loop.give_up(dt == 0 && has_numbers(s.particles) ? "step too small to advance time" : "not a number");
       break;
     }
     relaxation.step(s.time, dt);
@@ -233,8 +241,10 @@ RunResult find_equilibrium(SimulationImpl<D>& s, const RelaxOptions& options) {
     const double progress = std::log(std::max(result.residual, 1e-300)) / std::log(options.tolerance);
     stopped = loop.stopped(options.progress, std::min(1.0, progress));
     result.remaining_motion = relaxation.remaining_motion();
+    // Nothing has moved yet, but will.
+    const bool waits = scale == 0 && !left_alone;
     const bool small =
-        s.time - start >= options.ramp_time &&
+        !waits && s.time - start >= options.ramp_time &&
         ((left_alone && relaxation.force_norm() <= round_off) ||
          (result.residual <= options.tolerance &&
           (result.remaining_motion <= RelaxOptions::still_moving || result.residual == 0)));

@@ -14,7 +14,6 @@
 #include <taut/internal/pair_payload.hpp>
 #include <taut/internal/powers.hpp>
 #include <utility>
-#include <vector>
 
 namespace taut {
 
@@ -38,9 +37,6 @@ class ClosureSystem {
     }
     p.mirror.tensors(moments_);
     inverse_diagonal_ = inverse_diagonal();
-    for (Index a = 0; a < p.n; ++a)
-      for (int d = 0; d < D; ++d)
-        if (std::isnan(p.B[static_cast<std::size_t>(a)][d])) open_.emplace_back(a, d);
   }
 
   std::size_t size() const { return static_cast<std::size_t>(p_.total); }
@@ -91,7 +87,6 @@ class ClosureSystem {
     }
     // Mirror images follow their masters: they have no equations of their own.
     for (int d = 0; d < D; ++d) std::fill(out.component(d) + p_.n, out.component(d) + p_.total, 0.0);
-    leave_open(out);
   }
 
   /// One over the diagonal of S, for each component of lambda.
@@ -176,13 +171,7 @@ class ClosureSystem {
       });
       defect.template set_vec<D>(a, sum);
     }
-    leave_open(defect);
     return defect;
-  }
-
-  /// Zero where closure is not asked for.
-  void leave_open(Field& field) const {
-    for (const auto& [a, d] : open_) field.component(d)[a] = 0;
   }
 
  private:
@@ -190,7 +179,6 @@ class ClosureSystem {
   const PairList& pairs_;
   const PairOperator<D>& op_;
   Field moments_, mu_, first_moment_, inverse_diagonal_;
-  std::vector<std::pair<Index, int>> open_;  // particles and components whose areas are no numbers
 };
 
 /// The system has a solution only if the areas close: sum B = 0.
@@ -205,7 +193,6 @@ void check_areas(const Particles<D>& p) {
   Vec<D> sum = Vec<D>::Zero();
   double total = 0;
   for (const Vec<D>& B : p.B) {
-    if (!B.allFinite()) return;  // what is left open there closes the rest
     sum += B;
     total += B.norm();
   }
