@@ -25,7 +25,7 @@ Vec<D> start_displacement(const Vec<D>& X) {
 namespace {
 
 constexpr double cfl = 0.6;
-constexpr double forever = 1e30;  // [s]; steps are stopped by their number
+constexpr double forever = 1e9;  // [s], told apart from the next step; steps are stopped by their number
 
 template <int D>
 std::shared_ptr<const Material<D>> step_material(bool updated) {
