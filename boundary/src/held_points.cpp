@@ -54,8 +54,7 @@ void HeldPoints<D>::factor(const Field& mass, const std::vector<char>& fixed) {
         column[i] = static_cast<Index>(system_->particles.size());
         system_->particles.push_back(term.particle);
       }
-      entries.emplace_back(static_cast<int>(row_point_.size()), column[i],
-                           term.weight);
+      entries.emplace_back(static_cast<int>(row_point_.size()), column[i], term.weight);
     }
     if (free) row_point_.push_back(k);
   }
@@ -74,10 +73,10 @@ void HeldPoints<D>::factor(const Field& mass, const std::vector<char>& fixed) {
   constexpr double redundant = 1e-10;  // pivots of independent rows are of the order of the diagonal
   if (system_->factors.info() != Eigen::Success ||
       !(system_->factors.vectorD().minCoeff() > redundant * normal.diagonal().maxCoeff()))
-    throw InputError(
-        fmt::format("the {} points held on the boundary do not move independently: where walls meet, or in a body one "
-                    "particle thick, they hold the same particles twice. Hold fewer of them, or refine dx there",
-                    points));
+    throw InputError(fmt::format(
+        "the {} points held on the boundary do not move independently: where walls meet, or in a body one "
+        "particle thick, they hold the same particles twice. Hold fewer of them, or refine dx there",
+        points));
 }
 
 template <int D>

@@ -41,14 +41,19 @@ const std::vector<AutoRule>& auto_rules() {
       {"formulation", "tl_displacement", "stresses from the deformation, on other particles", on_pairs,
        "neighbours are found once, and there is no tensile instability"},
       {"operators", "compatible", "`tl_displacement`", on_pairs,
-       "a constant stress balances its tractions on any cloud, through facets where particles lie inside of the "
-       "surface; `corrected` does not converge on irregular ones. On node-centred lattices in boxes they are `corrected` ones, "
+       "a constant stress balances its tractions on any cloud, through facets where particles lie inside of "
+       "the "
+       "surface; `corrected` does not converge on irregular ones. On node-centred lattices in boxes they are "
+       "`corrected` ones, "
        "as light as those"},
       {"kernel", "sinc5", "the material gives stress rates", rates,
        "the kernel that the updated Lagrangian scenes were measured with"},
-      {"kernel", "lucy", "particles lie inside of the surface: a cell-centred lattice, centroids from a file", inside,
-       "cantilever 8 and 16 cells high, centroids jittered by a quarter of their spacing: tip off by 5.4 and 1.2 %, "
-       "`quadratic` by 7.3 and 1.8 %; `wendland_c2` by 3.6 and 0.6 %, but its steps are half as long on irregular clouds"},
+      {"kernel", "lucy", "particles lie inside of the surface: a cell-centred lattice, centroids from a file",
+       inside,
+       "cantilever 8 and 16 cells high, centroids jittered by a quarter of their spacing: tip off by 5.4 and "
+       "1.2 %, "
+       "`quadratic` by 7.3 and 1.8 %; `wendland_c2` by 3.6 and 0.6 %, but its steps are half as long on "
+       "irregular clouds"},
       {"kernel", "quadratic", "`tl_displacement` on other particles", on_pairs,
        "cantilever at -250 N, dx 2 mm: tip off by 0.7 % on the lattice and 0.2 % jittered, `wendland_c2` by "
        "1.7 % on both, for the same work"},
@@ -72,7 +77,8 @@ const std::vector<AutoRule>& auto_rules() {
 }
 
 const std::vector<std::string>& pair_keys() {
-  static const std::vector<std::string> keys = {"operators", "kernel", "support_dx", "neighbours", "pair_precision"};
+  static const std::vector<std::string> keys = {"operators", "kernel", "support_dx", "neighbours",
+                                                "pair_precision"};
   return keys;
 }
 
@@ -152,7 +158,7 @@ Method complete(const Method& method, const Cloud<D>& cloud, const Material<D>& 
   return with_defaults(chosen);
 }
 
-#define TAUT_INSTANTIATE(D)                   \
+#define TAUT_INSTANTIATE(D)                      \
   template bool lies_inside<D>(const Cloud<D>&); \
   template Method complete<D>(const Method&, const Cloud<D>&, const Material<D>&);
 TAUT_INSTANTIATE(1)

@@ -45,7 +45,8 @@ void check_volume(const SimulationImpl<D>& s, Health& health) {
                                -1,
                                {}});
   if (!cloud.guessed_volumes) return;
-  // Right for nodes of a mesh; the middles of its elements would need their volumes. Nothing tells them apart.
+  // Right for nodes of a mesh; the middles of its elements would need their volumes. Nothing tells them
+  // apart.
   health.measures.push_back({"health_volume_guessed",
                              1,
                              1,
@@ -80,9 +81,8 @@ Health setup_health(const SimulationImpl<D>& s, const Formulation<D>& formulatio
                       "particles that nearly coincide, or area vectors that do not fit; or use other "
                       "operators or a larger support_dx",
                       at < 0 ? -1 : s.particles.id[static_cast<std::size_t>(at)],
-                      at < 0 ? std::string("?")
-                             : describe<D>(s.particles.reference_position(at)),
-                      relative, relative / 3));
+                      at < 0 ? std::string("?") : describe<D>(s.particles.reference_position(at)), relative,
+                      relative / 3));
     health.measures.push_back(measure_at(s.particles, "health_frequency", relative, 8.0,
                                          "highest frequency times dx / c: the step that the operators cost",
                                          at));

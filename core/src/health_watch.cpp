@@ -100,7 +100,8 @@ template <int D>
 void HealthWatch<D>::add_motion(Health& health) const {
   if (!worst_.known) return;
   const Particles<D>& p = s_.particles;
-  // Below the round-off of displacements (of single-precision operators where they are large) there is nothing rough.
+  // Below the round-off of displacements (of single-precision operators where they are large) there is
+  // nothing rough.
   double farthest = 0;
   for (int d = 0; d < D; ++d)
     for (Index i = 0; i < p.n; ++i) farthest = std::max(farthest, std::abs(p.u.component(d)[i]));

@@ -22,7 +22,7 @@ class Body {
  public:
   static constexpr int turns = D * (D - 1) / 2;
   static constexpr int motions = D + turns;
-  using Motion = Eigen::Matrix<double, motions, 1>;     // D translations, then turns, of unit size at the rim
+  using Motion = Eigen::Matrix<double, motions, 1>;  // D translations, then turns, of unit size at the rim
   using Directions = Eigen::Matrix<double, motions, motions>;
 
   // First all positions, to know the centre and the size.
@@ -52,7 +52,8 @@ class Body {
   void hold(const Vec<D>& X, int axis) {
     Motion row = field(X).row(axis).transpose();
     constrained_ = true;
-    for (int k = 0; k < motions; ++k) {  // Givens rotations: what is left is the triangle of a QR factorisation
+    for (int k = 0; k < motions;
+         ++k) {  // Givens rotations: what is left is the triangle of a QR factorisation
       if (row[k] == 0) continue;
       const double length = std::hypot(rows_(k, k), row[k]), c = rows_(k, k) / length, s = row[k] / length;
       for (int j = k; j < motions; ++j) {
@@ -120,7 +121,8 @@ class Body {
   std::string free_motions() const {
     std::string slides, turns_about;
     for (int d = 0; d < D; ++d)
-      if (slides_[static_cast<std::size_t>(d)]) slides += fmt::format("{}{}", slides.empty() ? "" : ", ", "xyz"[d]);
+      if (slides_[static_cast<std::size_t>(d)])
+        slides += fmt::format("{}{}", slides.empty() ? "" : ", ", "xyz"[d]);
     for (int k = 0; k < turns; ++k) {
       Motion axis = Motion::Zero();
       for (const Motion& t : turning_) axis += t[D + k] * t;
@@ -189,7 +191,8 @@ void require_held(const Support<D>& support) {
   const auto body_of = [&](Index i) -> Body<D>& {
     return bodies[static_cast<std::size_t>(support.bodies[static_cast<std::size_t>(i)])];
   };
-  for (Index i = 0; i < p.n; ++i) body_of(i).include(p.X.template vec<D>(i), p.id[static_cast<std::size_t>(i)]);
+  for (Index i = 0; i < p.n; ++i)
+    body_of(i).include(p.X.template vec<D>(i), p.id[static_cast<std::size_t>(i)]);
   for (Body<D>& body : bodies) body.finish_size();
   const std::vector<std::uint8_t> held = support.constraints.held(p.n);
   for (Index i = 0; i < p.n; ++i)
@@ -223,7 +226,8 @@ void require_held(const Support<D>& support) {
           "{} the body that contains particle {} at {}: it is free {}, and the loads push it {}, so that it "
           "has no equilibrium. Add a clamp, rollers or a symmetry plane, balance the loads, or use run",
           body.constrained() ? "the constraints do not hold" : "nothing holds", id,
-          describe<D>(p.reference_position(p.place[static_cast<std::size_t>(id)])), body.free_motions(), excited));
+          describe<D>(p.reference_position(p.place[static_cast<std::size_t>(id)])), body.free_motions(),
+          excited));
     }
   }
 }

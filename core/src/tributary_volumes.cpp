@@ -90,8 +90,8 @@ std::vector<double> tributary_volumes(const std::vector<Vec<D>>& X, const BodyMe
       const Simplex<D>& corners = mesh.simplices[s];
       bool equally = false;
       for (const Index v : corners) equally = equally || shared_equally[at(v)];
-      const Vec<D + 1> w =
-          equally ? Vec<D + 1>(Vec<D + 1>::Constant(1.0 / (D + 1))) : simplex_shares<D>(X, corners, mesh.outer[s]);
+      const Vec<D + 1> w = equally ? Vec<D + 1>(Vec<D + 1>::Constant(1.0 / (D + 1)))
+                                   : simplex_shares<D>(X, corners, mesh.outer[s]);
       for (int k = 0; k <= D; ++k) V[at(corners[static_cast<std::size_t>(k)])] += w[k] * volume[s];
     }
     done = true;

@@ -9,7 +9,8 @@ using namespace taut;
 namespace {
 
 Method method_of(const Cloud<2>& cloud, const Method& method, const char* material = "neo_hookean") {
-  return Simulation<2>(cloud, make_material<2>(material, {.E = 1e6, .nu = 0.3, .density = 1000}), method).method();
+  return Simulation<2>(cloud, make_material<2>(material, {.E = 1e6, .nu = 0.3, .density = 1000}), method)
+      .method();
 }
 const Shape<2> sheet = box<2>({0, 0}, {1, 0.5});
 
@@ -22,7 +23,9 @@ TEST_CASE("a method that says nothing is stress points where there are cells") {
   CHECK(method_of(lattice, {.zero_energy_control = 0.5}).zero_energy_control == 0.5);
 }
 
-TEST_CASE("a method that says nothing is compatible pairs where there are no cells, the kernel by where particles lie") {
+TEST_CASE(
+    "a method that says nothing is compatible pairs where there are no cells, the kernel by where particles "
+    "lie") {
   const Method nodes = method_of(make_cloud(sheet, {.dx = 0.1, .cells = false}), {});
   CHECK(nodes.formulation == "tl_displacement");
   CHECK(nodes.operators == "compatible");
@@ -37,7 +40,9 @@ TEST_CASE("a method that says nothing is compatible pairs where there are no cel
   CHECK(method_of(bare, {}).kernel == "lucy");
 }
 
-TEST_CASE("a method that says something of pairs, or names its formulation, is what it says and plain in the rest") {
+TEST_CASE(
+    "a method that says something of pairs, or names its formulation, is what it says and plain in the "
+    "rest") {
   const Cloud<2> lattice = make_cloud(sheet, {.dx = 0.1});
   const Method compatible = method_of(lattice, {.operators = "compatible"});
   CHECK(compatible.formulation == "tl_displacement");

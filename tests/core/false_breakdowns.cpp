@@ -29,7 +29,8 @@ Cloud<2> two_squares() {
   return make_cloud(box<2>({0, 0}, {0.5, 0.5}) | box<2>({1, 0}, {1.5, 0.5}), {.dx = 0.1, .cells = true});
 }
 Simulation<2> jelly_of(Cloud<2> cloud, const Form& form) {
-  return {std::move(cloud), make_material<2>(form.material, jelly),
+  return {std::move(cloud),
+          make_material<2>(form.material, jelly),
           {.formulation = form.name, .support_dx = form.support_dx}};
 }
 
@@ -46,7 +47,8 @@ struct LaidOpen {
       : method(with_defaults({.formulation = form.name, .support_dx = form.support_dx})),
         material(make_material<2>(form.material, jelly)) {
     const Cloud<2> cloud = two_squares();
-    p = assemble<2>(cloud, {material}, std::vector<std::uint8_t>(cloud.size(), 0), {}, form.support_dx * cloud.dx * 1.1);
+    p = assemble<2>(cloud, {material}, std::vector<std::uint8_t>(cloud.size(), 0), {},
+                    form.support_dx * cloud.dx * 1.1);
     formulation = make_formulation<2>({p, constraints, loads, method});
   }
   std::string judged() {
@@ -62,7 +64,8 @@ TEST_CASE("soft bodies that fly apart at a hundred times their waves do not brea
     CAPTURE(form.name);
     auto s = jelly_of(two_squares(), form);
     s.set_velocity([](const Vec<2>& X) { return Vec<2>(X[0] < 0.75 ? -100 : 100, 30); });
-    const auto result = s.run(1e3, {.progress = [](std::int64_t steps, double, double) { return steps < 200; }});
+    const auto result =
+        s.run(1e3, {.progress = [](std::int64_t steps, double, double) { return steps < 200; }});
     CHECK(result.status == Status::ok);
     CHECK(result.steps == 200);
     CHECK(s.velocity(0)[0] == doctest::Approx(-100).epsilon(1e-3));

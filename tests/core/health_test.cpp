@@ -16,8 +16,7 @@ double value(const Health& health, const std::string& name) {
 
 Simulation<2> square(const Method& method, double jitter = 0, const char* material = "neo_hookean") {
   return {make_cloud(box<2>({0, 0}, {0.1, 0.05}), {.dx = 0.005, .jitter = jitter, .cells = true}),
-          make_material<2>(material, {.E = 1e6, .nu = 0.3, .density = 1000}),
-          with_defaults(method)};
+          make_material<2>(material, {.E = 1e6, .nu = 0.3, .density = 1000}), with_defaults(method)};
 }
 
 }  // namespace

@@ -27,7 +27,8 @@ Cloud<D> bar(double jitter = 0) {
 }
 template <int D>
 Simulation<D> simulation(Cloud<D> cloud, const Form& form = forms[0]) {
-  return {std::move(cloud), make_material<D>(form.material, {.E = 2e6, .nu = 0.3, .density = 1000}),
+  return {std::move(cloud),
+          make_material<D>(form.material, {.E = 2e6, .nu = 0.3, .density = 1000}),
           {.formulation = form.name, .support_dx = form.support_dx}};
 }
 
@@ -158,8 +159,9 @@ TEST_CASE("unheld: symmetry planes hold across themselves, prescribed motions as
 TEST_CASE("unheld: each body is asked for itself") {
   for (const Form& form : forms) {
     CAPTURE(form.name);
-    auto s = simulation(
-        make_cloud(box<2>({0, 0}, {0.2, 0.05}) | box<2>({0.3, 0}, {0.5, 0.05}), {.dx = 0.0125, .cells = true}), form);
+    auto s = simulation(make_cloud(box<2>({0, 0}, {0.2, 0.05}) | box<2>({0.3, 0}, {0.5, 0.05}),
+                                   {.dx = 0.0125, .cells = true}),
+                        form);
     s.clamp(s.face("x_min"));
     s.load(s.face("x_max"), {10, 0});
     const std::string text = refusal(s);
@@ -250,7 +252,8 @@ TEST_CASE("numbers out of range are refused or called by their name") {
   for (const char* name : {"tl_displacement", "tl_bond_associated", "tl_stress_points"}) {
     CAPTURE(name);
     auto thrown = of(good, bar<2>(), {.formulation = name});
-    thrown.set_velocity([](const Vec<2>& X) { return Vec<2>(X[0] > 0.1 ? 1e308 : 0, X[1] > 0.02 ? 1e308 : 0); });
+    thrown.set_velocity(
+        [](const Vec<2>& X) { return Vec<2>(X[0] > 0.1 ? 1e308 : 0, X[1] > 0.02 ? 1e308 : 0); });
     const auto result = thrown.run(0.01);
     REQUIRE(result.status == Status::broke);
     // A bond may be turned inside out by its other end, while the particle that it is told of is sound.

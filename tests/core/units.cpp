@@ -1,11 +1,11 @@
 // The same body in other units of length, mass and time has the same answer: bit for bit where the units
 // differ by powers of two, to 1e-6 where they are those of practice.
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fmt/format.h>
 #include <fstream>
 #include <string>
 #include <taut/internal/powers.hpp>
@@ -31,10 +31,15 @@ struct Units {
 
 std::vector<Units> binary_units() {
   const auto two = [](int n) { return std::ldexp(1.0, n); };
-  return {{two(10), two(-7), two(5)}, {two(-11), two(3), two(-8)}, {two(-20), two(-30), two(-13)}, {two(3), 1, 1},
-          {1, two(1), 1}, {1, 1, two(-1)}};
+  return {{two(10), two(-7), two(5)},
+          {two(-11), two(3), two(-8)},
+          {two(-20), two(-30), two(-13)},
+          {two(3), 1, 1},
+          {1, two(1), 1},
+          {1, 1, two(-1)}};
 }
-const std::vector<Units> practical_units{{1e3, 1, 1}, {1e-3, 1, 1}, {1e-3, 1e3, 1}, {1e-3, 1e-3, 1e-3}, {0.3048, 0.4536, 60}};
+const std::vector<Units> practical_units{
+    {1e3, 1, 1}, {1e-3, 1, 1}, {1e-3, 1e3, 1}, {1e-3, 1e-3, 1e-3}, {0.3048, 0.4536, 60}};
 
 struct Answer {
   std::vector<double> values;
@@ -88,7 +93,9 @@ Answer answer(const Units& in, Method method, From from, Solve solve) {
   s.load(s.face("x_max"), force, [period = in.time(0.05)](double t) { return std::min(1.0, t / period); });
   s.body_force(weight);
   if (D > 1 && solve == Solve::run)
-    s.prescribe([far = in.length(0.35), near = in.length(0.3)](const Vec<D>& X) { return X[D - 1] > far && X[0] < near; }, 0,
+    s.prescribe([far = in.length(0.35),
+                 near = in.length(0.3)](const Vec<D>& X) { return X[D - 1] > far && X[0] < near; },
+                0,
                 [size = in.length(1e-3), period = in.time(0.1)](const Vec<D>&, double t) {
                   const double q = t / period;
                   return size * q * q;
@@ -141,7 +148,9 @@ TEST_CASE("units: powers of two change no bit of pair forms") {
   for (const char* operators : {"standard", "corrected", "compatible", "antisymmetric", "quadratic"})
     for (const From from : {From::lattice, From::jittered})
       for (const Solve solve : {Solve::run, Solve::relax}) {
-        if (solve == Solve::relax && operators != std::string("corrected") && operators != std::string("compatible")) continue;
+        if (solve == Solve::relax && operators != std::string("corrected") &&
+            operators != std::string("compatible"))
+          continue;
         check_units<2>({.operators = operators}, from, solve);
       }
   check_units<2>({.formulation = "tl_bond_associated"}, From::jittered, Solve::run);
@@ -153,7 +162,8 @@ TEST_CASE("units: powers of two change no bit of pair forms") {
 
 TEST_CASE("units: powers of two change no bit of stress points") {
   for (const From from : {From::lattice, From::jittered})
-    for (const Solve solve : {Solve::run, Solve::relax}) check_units<2>({.formulation = "tl_stress_points"}, from, solve);
+    for (const Solve solve : {Solve::run, Solve::relax})
+      check_units<2>({.formulation = "tl_stress_points"}, from, solve);
   check_units<1>({.formulation = "tl_stress_points"}, From::lattice, Solve::relax);
   check_units<3>({.formulation = "tl_stress_points"}, From::jittered, Solve::run);
 }
@@ -161,7 +171,8 @@ TEST_CASE("units: powers of two change no bit of stress points") {
 TEST_CASE("units: powers of two change no bit of updated forms") {
   for (const char* form : {"ul_basic", "ul_artificial_stress"})
     for (const char* gradient : {"standard", "corrected"})
-      check_units<2>({.formulation = form, .viscosity = 0.1, .velocity_gradient = gradient}, From::lattice, Solve::run);
+      check_units<2>({.formulation = form, .viscosity = 0.1, .velocity_gradient = gradient}, From::lattice,
+                     Solve::run);
 }
 
 TEST_CASE("units: powers of two change no bit of clouds from files") {
@@ -181,7 +192,8 @@ TEST_CASE("units: those of practice change results by less than 1e-6") {
       const Answer other = answer<2>(units, method, From::jittered, Solve::run);
       REQUIRE(other.values.size() == si.values.size());
       for (std::size_t i = 0; i < si.values.size(); ++i)
-        CHECK(other.values[i] == doctest::Approx(si.values[i]).epsilon(1e-6).scale(std::abs(si.values[i]) < 1 ? size : 1e3));
+        CHECK(other.values[i] ==
+              doctest::Approx(si.values[i]).epsilon(1e-6).scale(std::abs(si.values[i]) < 1 ? size : 1e3));
     }
   }
 }

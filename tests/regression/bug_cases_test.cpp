@@ -111,7 +111,8 @@ TEST_CASE("bug case 11: bars in series: stress points are exact") {
   CHECK(off(series(stress_points(), 0.02)) < 1e-4);
 }
 TEST_CASE("bug case 11: bars in series: forms on pairs are exact") {
-  // What is left is the forms' own next to faces, with pair vectors in single precision: a bar of one material has as much.
+  // What is left is the forms' own next to faces, with pair vectors in single precision: a bar of one
+  // material has as much.
   for (const Named& m : on_pairs()) CHECK(off(series(m.method, 0.02)) < 0.01);
 }
 

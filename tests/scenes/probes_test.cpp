@@ -30,7 +30,8 @@ std::string said_of(const std::string& text) {
   return "";
 }
 std::string said_of_probe(const std::string& type, const std::string& at, const std::string& lattice = "") {
-  std::string text = replaced(test::good_scene, "type = \"displacement\"\naxis = \"x\"\nat = [0.2, 0.025]", type + "\nat = " + at);
+  std::string text = replaced(test::good_scene, "type = \"displacement\"\naxis = \"x\"\nat = [0.2, 0.025]",
+                              type + "\nat = " + at);
   if (!lattice.empty()) text = replaced(text, "dx = 0.0125", "dx = 0.0125\n" + lattice);
   return said_of(text);
 }
@@ -49,9 +50,9 @@ std::vector<Row> probe_rows(const CaseResult& result) {
 
 // The good scene made dynamic, with more probes.
 Scene swinging(const std::string& probes) {
-  const std::string text =
-      replaced(replaced(test::good_scene, "mode = \"relax\"\ntolerance = 1e-4", "mode = \"dynamic\"\nduration = 1e-3\nsamples = 20"),
-               "[[run]]", probes + "\n[[run]]");
+  const std::string text = replaced(replaced(test::good_scene, "mode = \"relax\"\ntolerance = 1e-4",
+                                             "mode = \"dynamic\"\nduration = 1e-3\nsamples = 20"),
+                                    "[[run]]", probes + "\n[[run]]");
   return parse_scene(text, "scene.toml");
 }
 
@@ -60,7 +61,8 @@ Scene swinging(const std::string& probes) {
 TEST_CASE("probes of every kind must lie in the body") {
   for (const std::string& type : {displacement, velocity, stress}) {
     CAPTURE(type);
-    for (const char* at : {"[-200.0, 25.0]", "[1e308, 0.0]", "[0.207, 0.025]", "[0.1, -0.007]", "[0.1, 0.06]"}) {
+    for (const char* at :
+         {"[-200.0, 25.0]", "[1e308, 0.0]", "[0.207, 0.025]", "[0.1, -0.007]", "[0.1, 0.06]"}) {
       CAPTURE(at);
       const std::string text = said_of_probe(type, at);
       CAPTURE(text);
@@ -68,7 +70,8 @@ TEST_CASE("probes of every kind must lie in the body") {
       CHECK(has(text, "outside of the body"));
       CHECK(has(text, "nearest particle"));
     }
-    for (const char* at : {"[0.2, 0.025]", "[0.0, 0.0]", "[0.2, 0.05]", "[0.071, 0.033]", "[0.206, 0.025]", "[0.1, -0.006]"}) {
+    for (const char* at :
+         {"[0.2, 0.025]", "[0.0, 0.0]", "[0.2, 0.05]", "[0.071, 0.033]", "[0.206, 0.025]", "[0.1, -0.006]"}) {
       CAPTURE(at);
       CHECK(said_of_probe(type, at) == "");
     }
@@ -76,23 +79,28 @@ TEST_CASE("probes of every kind must lie in the body") {
 }
 
 TEST_CASE("no point of the surface is taken for one outside") {
-  for (const char* lattice : {"kind = \"cell_centred\"", "kind = \"cell_centred\"\njitter = 0.3", "jitter = 0.3"})
+  for (const char* lattice :
+       {"kind = \"cell_centred\"", "kind = \"cell_centred\"\njitter = 0.3", "jitter = 0.3"})
     for (int i = 0; i <= 40; ++i) {
       const double s = i / 40.0;
-      for (const auto& [x, y] : {std::pair{0.2 * s, 0.0}, {0.2 * s, 0.05}, {0.0, 0.05 * s}, {0.2, 0.05 * s}}) {
-        const Scene scene = parse_scene(
-            replaced(replaced(test::good_scene, "at = [0.2, 0.025]", "at = [" + std::to_string(x) + ", " + std::to_string(y) + "]"),
-                     "dx = 0.0125", std::string("dx = 0.0125\n") + lattice),
-            "scene.toml");
+      for (const auto& [x, y] :
+           {std::pair{0.2 * s, 0.0}, {0.2 * s, 0.05}, {0.0, 0.05 * s}, {0.2, 0.05 * s}}) {
+        const Scene scene =
+            parse_scene(replaced(replaced(test::good_scene, "at = [0.2, 0.025]",
+                                          "at = [" + std::to_string(x) + ", " + std::to_string(y) + "]"),
+                                 "dx = 0.0125", std::string("dx = 0.0125\n") + lattice),
+                        "scene.toml");
         if (i % 8 == 0) CHECK_NOTHROW(check_case(scene, scene.runs[0], {}));
       }
     }
   // A ring, whose lattice is a staircase.
-  std::string ring = replaced(test::good_scene, "type = \"box\"\nmin = [0.0, 0.0]\nmax = [0.2, 0.05]",
-                              "type = \"ring\"\ncentre = [0.0, 0.0]\ninner_radius = 0.05\nouter_radius = 0.1");
+  std::string ring =
+      replaced(test::good_scene, "type = \"box\"\nmin = [0.0, 0.0]\nmax = [0.2, 0.05]",
+               "type = \"ring\"\ncentre = [0.0, 0.0]\ninner_radius = 0.05\nouter_radius = 0.1");
   ring = replaced(ring, "on = \"x_max\"", "where = { x = [0.08, 0.2] }");
   ring = replaced(ring, "on = \"x_min\"", "where = { x = [-0.2, -0.08] }");
-  for (const char* at : {"[0.0707106, 0.0707106]", "[0.05, 0.0]", "[-0.0353553, 0.0353553]", "[0.0, -0.1]", "[0.0866025, 0.05]"}) {
+  for (const char* at : {"[0.0707106, 0.0707106]", "[0.05, 0.0]", "[-0.0353553, 0.0353553]", "[0.0, -0.1]",
+                         "[0.0866025, 0.05]"}) {
     CAPTURE(at);
     CHECK(said_of(replaced(ring, "at = [0.2, 0.025]", std::string("at = ") + at)) == "");
   }
@@ -111,7 +119,8 @@ TEST_CASE("probes of clouds from files must lie among their particles") {
       left += dx;
     }
   }
-  std::string text = replaced(test::good_scene, "type = \"box\"\nmin = [0.0, 0.0]\nmax = [0.2, 0.05]\n\n[lattice]\ndx = 0.0125",
+  std::string text = replaced(test::good_scene,
+                              "type = \"box\"\nmin = [0.0, 0.0]\nmax = [0.2, 0.05]\n\n[lattice]\ndx = 0.0125",
                               "type = \"csv\"\nfile = \"" + file.string() + "\"");
   text = replaced(text, "support_dx = 1.5", "support_dx = 3.4");
   for (const char* at : {"[0.0, 0.01]", "[0.0625, 0.01]", "[0.055, 0.0]", "[0.03, 0.0187]", "[0.0, 0.0]"}) {
@@ -120,13 +129,16 @@ TEST_CASE("probes of clouds from files must lie among their particles") {
   }
   for (const char* at : {"[-0.01, 0.01]", "[0.08, 0.01]", "[0.03, 0.04]", "[-200.0, 25.0]"}) {
     CAPTURE(at);
-    CHECK(has(said_of(replaced(text, "at = [0.2, 0.025]", std::string("at = ") + at)), "outside of the body"));
+    CHECK(
+        has(said_of(replaced(text, "at = [0.2, 0.025]", std::string("at = ") + at)), "outside of the body"));
   }
   std::filesystem::remove(file);
 }
 
 TEST_CASE("an energy that a run has not is found before it runs") {
-  std::string text = test::good_scene + "\n[[run]]\nlabel = \"corotated\"\nformulation = \"tl_displacement\"\nmaterial = \"corotated_svk\"\n";
+  std::string text =
+      test::good_scene +
+      "\n[[run]]\nlabel = \"corotated\"\nformulation = \"tl_displacement\"\nmaterial = \"corotated_svk\"\n";
   text = replaced(text, "[[run]]", "[[probe]]\nname = \"energy\"\ntype = \"strain_energy\"\n\n[[run]]");
   const std::string said = said_of(text);
   CAPTURE(said);
@@ -136,7 +148,8 @@ TEST_CASE("an energy that a run has not is found before it runs") {
 }
 
 TEST_CASE("a loaded body that nothing holds is found before it runs") {
-  const std::string said = said_of(replaced(test::good_scene, "type = \"clamp\"\non = \"x_min\"", "type = \"roller\"\non = \"y_min\""));
+  const std::string said = said_of(
+      replaced(test::good_scene, "type = \"clamp\"\non = \"x_min\"", "type = \"roller\"\non = \"y_min\""));
   CAPTURE(said);
   CHECK(said.starts_with("scene.toml:40:"));
   CHECK(has(said, "'total'"));
@@ -151,7 +164,8 @@ TEST_CASE("a step that never reaches the end is found before it runs") {
 
 TEST_CASE("a window after the end is found when the scene is read") {
   try {
-    swinging("[[probe]]\nname = \"late\"\ntype = \"kinetic_energy\"\nmeasure = \"peak\"\nwindow = [2e-3, 3e-3]\n");
+    swinging(
+        "[[probe]]\nname = \"late\"\ntype = \"kinetic_energy\"\nmeasure = \"peak\"\nwindow = [2e-3, 3e-3]\n");
     FAIL("was taken");
   } catch (const InputError& error) {
     CHECK(has(error.what(), "'late' begins at 0.002 s, after the end of the run 'total' at 0.001 s"));
@@ -160,7 +174,8 @@ TEST_CASE("a window after the end is found when the scene is read") {
 
 TEST_CASE("what is divided by nothing has no value and no status ok") {
   const Scene scene = swinging(
-      "[[probe]]\nname = \"still\"\ntype = \"velocity\"\naxis = \"y\"\nat = [0.0, 0.025]\nmeasure = \"peak\"\n"
+      "[[probe]]\nname = \"still\"\ntype = \"velocity\"\naxis = \"y\"\nat = [0.0, 0.025]\nmeasure = "
+      "\"peak\"\n"
       "[[probe]]\nname = \"ratio\"\ntype = \"kinetic_energy\"\nmeasure = \"peak\"\nover = \"still\"\n");
   const CaseResult result = run_case(scene, scene.runs[0], {}, {});
   const auto rows = probe_rows(result);
@@ -175,7 +190,9 @@ TEST_CASE("what is divided by nothing has no value and no status ok") {
 TEST_CASE("directions are directions whatever their length") {
   for (const char* direction : {"[1e200, 0.0]", "[1e-200, 0.0]", "[3.0, 0.0]"}) {
     CAPTURE(direction);
-    const Scene scene = parse_scene(replaced(test::good_scene, "direction = [1.0, 0.0]", std::string("direction = ") + direction), "s.toml");
+    const Scene scene = parse_scene(
+        replaced(test::good_scene, "direction = [1.0, 0.0]", std::string("direction = ") + direction),
+        "s.toml");
     const CaseResult result = run_case(scene, scene.runs[0], {}, {});
     REQUIRE(result.measured[0].value);
     CHECK(*result.measured[0].value == doctest::Approx(2e-3).epsilon(0.1));
@@ -215,7 +232,8 @@ probe = [{ name = "foot", type = "cauchy_stress", component = "xx", at = [0.0], 
          { name = "quarter", type = "cauchy_stress", component = "xx", at = [0.25], reference = -1.986525e10 },
          { name = "top", type = "displacement", axis = "x", at = [1.0], reference = -2.20725e-4 }]
 run = [{ label = "corrected", formulation = "tl_displacement" }, { label = "stress points", formulation = "tl_stress_points" }]
-)", "km.toml");
+)",
+                                  "km.toml");
   for (const RunSpec& run : scene.runs)
     for (const Row& row : probe_rows(run_case(scene, run, {}, {}))) {
       CAPTURE(row.quantity);

@@ -24,8 +24,8 @@ struct HealthMeasure {
 };
 
 /// The measures that a formulation and a run allow, in a fixed order. Limits come from the cases of
-/// bench/HEALTH.md: there every answer off by more than 10 % is flagged, and few that are off by less than 1 %.
-/// An answer can be wrong for reasons that no measure sees.
+/// bench/HEALTH.md: there every answer off by more than 10 % is flagged, and few that are off by less than 1
+/// %. An answer can be wrong for reasons that no measure sees.
 struct Health {
   std::vector<HealthMeasure> measures;
 
