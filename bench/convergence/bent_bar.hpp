@@ -4,7 +4,7 @@
 
 #include <lib/results.hpp>
 #include <optional>
-#include <taut/core/simulation.hpp>
+#include <taut/simulation/simulation.hpp>
 
 namespace taut::bench {
 

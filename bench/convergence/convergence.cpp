@@ -10,7 +10,7 @@
 #include <lib/report.hpp>
 #include <lib/scene_loader.hpp>
 #include <lib/terminal.hpp>
-#include <taut/core/error.hpp>
+#include <taut/base/error.hpp>
 
 namespace taut::bench {
 namespace {

@@ -3,8 +3,8 @@
 #include <convergence/cube_run.hpp>
 #include <convergence/hexahedral_fem.hpp>
 #include <convergence/run_row.hpp>
-#include <taut/core/error.hpp>
-#include <taut/core/stress_recovery.hpp>
+#include <taut/base/error.hpp>
+#include <taut/output/stress_recovery.hpp>
 
 namespace taut::bench {
 namespace {

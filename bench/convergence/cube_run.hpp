@@ -2,7 +2,7 @@
 /// \file
 /// One run of the swinging cube, by a method of the library or by finite elements.
 
-#include <taut/core/auto_method.hpp>
+#include <taut/formulations/auto_method.hpp>
 #include <convergence/swinging_cube.hpp>
 #include <lib/results.hpp>
 #include <optional>

@@ -13,8 +13,8 @@
 #include <lib/progress.hpp>
 #include <lib/scene_loader.hpp>
 #include <numeric>
-#include <taut/core/auto_method.hpp>
-#include <taut/core/error.hpp>
+#include <taut/formulations/auto_method.hpp>
+#include <taut/base/error.hpp>
 
 namespace taut::bench {
 namespace {

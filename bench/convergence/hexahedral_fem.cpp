@@ -3,7 +3,7 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <convergence/hexahedral_fem.hpp>
-#include <taut/core/error.hpp>
+#include <taut/base/error.hpp>
 
 namespace taut::bench {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <array>
 #include <functional>
-#include <taut/core/types.hpp>
+#include <taut/base/types.hpp>
 #include <taut/materials/material.hpp>
 #include <vector>
 

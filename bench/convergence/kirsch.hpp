@@ -2,7 +2,7 @@
 /// \file
 /// A circular hole in a wide plate under tension, exactly (Kirsch 1898).
 
-#include <taut/core/geometry.hpp>
+#include <taut/geometry/geometry.hpp>
 #include <taut/materials/material.hpp>
 
 namespace taut::bench {

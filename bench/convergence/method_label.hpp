@@ -7,7 +7,7 @@
 #include <lib/names.hpp>
 #include <lib/results.hpp>
 #include <string>
-#include <taut/core/method.hpp>
+#include <taut/operators/method.hpp>
 
 namespace taut::bench {
 

@@ -3,7 +3,7 @@
 /// The columns of results.csv that a run of the library fills.
 
 #include <lib/results.hpp>
-#include <taut/core/simulation.hpp>
+#include <taut/simulation/simulation.hpp>
 
 namespace taut::bench {
 

@@ -7,9 +7,9 @@
 #include <convergence/run_row.hpp>
 #include <lib/names.hpp>
 #include <lib/progress.hpp>
-#include <taut/core/auto_method.hpp>
-#include <taut/core/error.hpp>
-#include <taut/core/simulation.hpp>
+#include <taut/formulations/auto_method.hpp>
+#include <taut/base/error.hpp>
+#include <taut/simulation/simulation.hpp>
 
 namespace taut::bench {
 namespace {

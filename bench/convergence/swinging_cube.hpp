@@ -5,7 +5,7 @@
 
 #include <functional>
 #include <optional>
-#include <taut/core/simulation.hpp>
+#include <taut/simulation/simulation.hpp>
 #include <vector>
 
 namespace taut::bench {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <lib/analytic.hpp>
 #include <lib/scene_parts.hpp>
-#include <taut/internal/local_origin.hpp>
+#include <taut/geometry/local_origin.hpp>
 #include <taut/materials/hypoelastic_bar.hpp>
 
 namespace taut::bench {

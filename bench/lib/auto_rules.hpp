@@ -5,7 +5,7 @@
 #include <lib/scene.hpp>
 #include <set>
 #include <string>
-#include <taut/core/auto_method.hpp>
+#include <taut/formulations/auto_method.hpp>
 
 namespace taut::bench {
 

@@ -3,7 +3,7 @@
 /// From a scene, a run and a sweep point to a simulation.
 
 #include <lib/scene.hpp>
-#include <taut/core/simulation.hpp>
+#include <taut/simulation/simulation.hpp>
 
 namespace taut::bench {
 

@@ -1,4 +1,4 @@
-#include <taut/core/auto_method.hpp>
+#include <taut/formulations/auto_method.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>

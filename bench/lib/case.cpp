@@ -10,8 +10,8 @@
 #include <lib/reference.hpp>
 #include <lib/scene_keys.hpp>
 #include <limits>
-#include <taut/core/derived.hpp>
-#include <taut/internal/local_origin.hpp>
+#include <taut/output/derived.hpp>
+#include <taut/geometry/local_origin.hpp>
 
 namespace taut::bench {
 namespace {

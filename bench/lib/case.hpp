@@ -8,7 +8,7 @@
 #include <lib/results.hpp>
 #include <lib/scene.hpp>
 #include <optional>
-#include <taut/core/simulation.hpp>
+#include <taut/simulation/simulation.hpp>
 
 namespace taut::bench {
 

@@ -8,7 +8,7 @@
 #include <lib/files.hpp>
 #include <lib/terminal.hpp>
 #include <sstream>
-#include <taut/core/error.hpp>
+#include <taut/base/error.hpp>
 
 namespace taut::bench {
 namespace {

@@ -10,8 +10,8 @@
 #include <cstring>
 #include <fstream>
 #include <lib/files.hpp>
-#include <taut/core/error.hpp>
-#include <taut/internal/output_file.hpp>
+#include <taut/base/error.hpp>
+#include <taut/output/output_file.hpp>
 
 namespace taut::bench {
 

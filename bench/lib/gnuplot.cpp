@@ -6,7 +6,7 @@
 #include <lib/files.hpp>
 #include <lib/gnuplot.hpp>
 #include <lib/terminal.hpp>
-#include <taut/internal/output_file.hpp>
+#include <taut/output/output_file.hpp>
 
 namespace taut::bench::gnuplot {
 namespace {

@@ -1,8 +1,8 @@
 #include <lib/names.hpp>
-#include <taut/core/auto_method.hpp>
-#include <taut/core/formulation.hpp>
-#include <taut/core/kernel.hpp>
-#include <taut/core/operators.hpp>
+#include <taut/formulations/auto_method.hpp>
+#include <taut/formulations/formulation.hpp>
+#include <taut/kernels/kernel.hpp>
+#include <taut/operators/operators.hpp>
 #include <taut/materials/material.hpp>
 
 namespace taut::bench {

@@ -11,7 +11,7 @@
 #include <lib/terminal.hpp>
 #include <new>
 #include <sstream>
-#include <taut/core/error.hpp>
+#include <taut/base/error.hpp>
 
 namespace taut::bench {
 namespace {

@@ -5,7 +5,7 @@
 #include <lib/terminal.hpp>
 #include <memory>
 #include <string>
-#include <taut/core/error.hpp>
+#include <taut/base/error.hpp>
 
 namespace taut::bench {
 

@@ -7,7 +7,7 @@
 #include <lib/names.hpp>
 #include <lib/results.hpp>
 #include <set>
-#include <taut/core/error.hpp>
+#include <taut/base/error.hpp>
 
 namespace taut::bench {
 namespace {

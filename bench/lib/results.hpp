@@ -7,7 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <taut/core/method.hpp>
+#include <taut/operators/method.hpp>
 #include <vector>
 
 namespace taut::bench {

@@ -8,9 +8,9 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <taut/core/auto_method.hpp>
-#include <taut/core/geometry.hpp>
-#include <taut/core/method.hpp>
+#include <taut/formulations/auto_method.hpp>
+#include <taut/geometry/geometry.hpp>
+#include <taut/operators/method.hpp>
 #include <taut/materials/material.hpp>
 #include <utility>
 #include <vector>

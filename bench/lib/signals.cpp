@@ -4,7 +4,7 @@
 #include <atomic>
 #include <lib/gnuplot.hpp>
 #include <lib/signals.hpp>
-#include <taut/internal/output_file.hpp>
+#include <taut/output/output_file.hpp>
 
 namespace taut::bench {
 namespace {

@@ -3,7 +3,7 @@
 /// Ctrl-C and the like.
 
 #include <string>
-#include <taut/core/error.hpp>
+#include <taut/base/error.hpp>
 
 namespace taut::bench {
 

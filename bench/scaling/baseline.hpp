@@ -4,8 +4,8 @@
 
 #include <memory>
 #include <string_view>
-#include <taut/core/geometry.hpp>
-#include <taut/core/method.hpp>
+#include <taut/geometry/geometry.hpp>
+#include <taut/operators/method.hpp>
 #include <taut/materials/material.hpp>
 #include <vector>
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <scaling/body.hpp>
-#include <taut/core/error.hpp>
+#include <taut/base/error.hpp>
 
 namespace taut::bench {
 

@@ -3,7 +3,7 @@
 /// The bodies whose steps are timed: cubes of particles, by what they cost.
 
 #include <cstdint>
-#include <taut/core/geometry.hpp>
+#include <taut/geometry/geometry.hpp>
 #include <vector>
 
 namespace taut::bench {

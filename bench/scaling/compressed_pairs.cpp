@@ -1,8 +1,8 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <scaling/baseline.hpp>
-#include <taut/core/fields.hpp>
-#include <taut/core/kernel.hpp>
+#include <taut/base/fields.hpp>
+#include <taut/kernels/kernel.hpp>
 #include <taut/neighbors/search.hpp>
 
 namespace taut::bench {

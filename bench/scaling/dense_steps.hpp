@@ -6,8 +6,8 @@
 #include <Eigen/Dense>
 #include <array>
 #include <cmath>
-#include <taut/core/geometry.hpp>
-#include <taut/core/kernel.hpp>
+#include <taut/geometry/geometry.hpp>
+#include <taut/kernels/kernel.hpp>
 #include <taut/materials/material.hpp>
 #include <vector>
 

@@ -4,8 +4,8 @@
 #include <chrono>
 #include <cmath>
 #include <scaling/engine_step.hpp>
-#include <taut/core/error.hpp>
-#include <taut/core/kernel.hpp>
+#include <taut/base/error.hpp>
+#include <taut/kernels/kernel.hpp>
 
 namespace taut::bench {
 

@@ -3,8 +3,8 @@
 /// Steps of taut itself, through its public interface.
 
 #include <memory>
-#include <taut/core/geometry.hpp>
-#include <taut/core/simulation.hpp>
+#include <taut/geometry/geometry.hpp>
+#include <taut/simulation/simulation.hpp>
 
 namespace taut::bench {
 

@@ -7,7 +7,7 @@
 #include <random>
 #include <scaling/body.hpp>
 #include <scaling/lists.hpp>
-#include <taut/core/error.hpp>
+#include <taut/base/error.hpp>
 
 namespace taut::bench {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
-#include <taut/core/fields.hpp>
+#include <taut/base/fields.hpp>
 #include <taut/neighbors/search.hpp>
 #include <vector>
 

@@ -2,7 +2,7 @@
 #include <deque>
 #include <scaling/baseline.hpp>
 #include <scaling/step_case.hpp>
-#include <taut/core/error.hpp>
+#include <taut/base/error.hpp>
 
 namespace taut::bench {
 namespace {

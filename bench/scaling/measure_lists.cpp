@@ -4,7 +4,7 @@
 #include <optional>
 #include <scaling/job.hpp>
 #include <scaling/lists.hpp>
-#include <taut/core/error.hpp>
+#include <taut/base/error.hpp>
 
 namespace taut::bench {
 namespace {

@@ -5,7 +5,7 @@
 #include <lib/html.hpp>
 #include <scaling/page.hpp>
 #include <scaling/summary.hpp>
-#include <taut/core/error.hpp>
+#include <taut/base/error.hpp>
 #include <thread>
 
 namespace taut::bench {

@@ -6,7 +6,7 @@
 #include <scaling/job.hpp>
 #include <scaling/page.hpp>
 #include <scaling/scaling.hpp>
-#include <taut/core/error.hpp>
+#include <taut/base/error.hpp>
 #include <utility>
 
 namespace taut::bench {

@@ -1,4 +1,4 @@
-#include <taut/core/auto_method.hpp>
+#include <taut/formulations/auto_method.hpp>
 #include <fstream>
 #include <scaling/peak_memory.hpp>
 #include <scaling/step_case.hpp>

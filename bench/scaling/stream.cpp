@@ -2,7 +2,7 @@
 
 #include <scaling/samples.hpp>
 #include <scaling/stream.hpp>
-#include <taut/internal/simd.hpp>
+#include <taut/base/simd.hpp>
 #include <vector>
 
 namespace taut::bench {

@@ -2,7 +2,7 @@
 /// \file
 /// What the machine can do at most: bandwidth of memory, rate of arithmetic.
 
-#include <taut/core/fields.hpp>
+#include <taut/base/fields.hpp>
 
 namespace taut::bench {
 

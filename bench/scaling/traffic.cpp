@@ -1,8 +1,8 @@
 #include <scaling/engine_step.hpp>
 #include <scaling/traffic.hpp>
-#include <taut/core/kernel.hpp>
-#include <taut/core/operators.hpp>
-#include <taut/internal/assembly.hpp>
+#include <taut/kernels/kernel.hpp>
+#include <taut/operators/operators.hpp>
+#include <taut/formulations/assembly.hpp>
 #include <taut/neighbors/search.hpp>
 
 namespace taut::bench {

@@ -2,8 +2,8 @@
 /// \file
 /// What a step must move and compute at least.
 
-#include <taut/core/geometry.hpp>
-#include <taut/core/method.hpp>
+#include <taut/geometry/geometry.hpp>
+#include <taut/operators/method.hpp>
 
 namespace taut::bench {
 

@@ -2,7 +2,7 @@
 
 #include <Eigen/SparseCholesky>
 #include <taut/boundary/held_points.hpp>
-#include <taut/core/error.hpp>
+#include <taut/base/error.hpp>
 #include <utility>
 
 namespace taut {

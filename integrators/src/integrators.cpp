@@ -1,4 +1,4 @@
-#include <taut/core/error.hpp>
+#include <taut/base/error.hpp>
 #include <taut/integrators/integrator.hpp>
 #include <taut/integrators/vector_ops.hpp>
 

@@ -1,7 +1,7 @@
-#include <taut/core/error.hpp>
+#include <taut/base/error.hpp>
 
-#include "lateral.hpp"
-#include "polar.hpp"
+#include <taut/materials/lateral.hpp>
+#include <taut/materials/polar.hpp>
 
 namespace taut {
 namespace {

@@ -1,5 +1,5 @@
-#include "models.hpp"
-#include "tensor_pack.hpp"
+#include <taut/materials/models.hpp>
+#include <taut/materials/tensor_pack.hpp>
 
 namespace taut {
 namespace {

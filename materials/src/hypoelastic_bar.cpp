@@ -1,7 +1,7 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <taut/core/error.hpp>
+#include <taut/base/error.hpp>
 #include <taut/materials/hypoelastic_bar.hpp>
 
 namespace taut {

@@ -2,10 +2,10 @@
 
 #include <Eigen/LU>
 #include <cmath>
-#include <taut/core/error.hpp>
+#include <taut/base/error.hpp>
 #include <taut/materials/material.hpp>
 
-#include "models.hpp"
+#include <taut/materials/models.hpp>
 
 namespace taut {
 

@@ -1,5 +1,5 @@
-#include "lateral.hpp"
-#include "plane_stress_neo_hookean.hpp"
+#include <taut/materials/lateral.hpp>
+#include <taut/materials/plane_stress_neo_hookean.hpp>
 
 namespace taut {
 namespace {

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include <taut/core/error.hpp>
+#include <taut/base/error.hpp>
 #include <taut/materials/material.hpp>
 
 // Every material: one file with TAUT_MATERIAL in it, and one line here.

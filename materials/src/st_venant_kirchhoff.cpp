@@ -1,4 +1,4 @@
-#include "lateral.hpp"
+#include <taut/materials/lateral.hpp>
 
 namespace taut {
 namespace {

@@ -1,4 +1,4 @@
-#include "cell_grid.hpp"
+#include <taut/neighbors/cell_grid.hpp>
 
 #include <algorithm>
 #include <bit>
@@ -6,9 +6,9 @@
 #include <limits>
 #include <memory>
 
-#include "lanes.hpp"
-#include "parallel.hpp"
-#include "sort_by_key.hpp"
+#include <taut/neighbors/lanes.hpp>
+#include <taut/neighbors/parallel.hpp>
+#include <taut/neighbors/sort_by_key.hpp>
 
 namespace taut::detail::inline TAUT_SIMD_NAMESPACE {
 namespace {

@@ -1,4 +1,4 @@
-#include "cell_search.hpp"
+#include <taut/neighbors/cell_search.hpp>
 
 #include <cmath>
 #include <map>

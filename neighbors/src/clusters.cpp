@@ -1,9 +1,9 @@
-#include "clusters.hpp"
+#include <taut/neighbors/clusters.hpp>
 
 #include <algorithm>
 #include <utility>
 
-#include "parallel.hpp"
+#include <taut/neighbors/parallel.hpp>
 
 namespace taut::detail {
 namespace {

@@ -1,7 +1,7 @@
 #include <bit>
 #include <taut/neighbors/pair_list.hpp>
 
-#include "parallel.hpp"
+#include <taut/neighbors/parallel.hpp>
 
 namespace taut {
 

@@ -1,4 +1,4 @@
-#include "kd_tree.hpp"
+#include <taut/neighbors/kd_tree.hpp>
 
 #include <cmath>
 #include <map>

@@ -4,13 +4,13 @@
 #include <bit>
 #include <cmath>
 #include <numeric>
-#include <taut/core/error.hpp>
+#include <taut/base/error.hpp>
 #include <taut/neighbors/search.hpp>
 #include <unordered_set>
 
-#include "parallel.hpp"
-#include "point_check.hpp"
-#include "sort_by_key.hpp"
+#include <taut/neighbors/parallel.hpp>
+#include <taut/neighbors/point_check.hpp>
+#include <taut/neighbors/sort_by_key.hpp>
 
 namespace taut {
 namespace {

@@ -1,10 +1,10 @@
-#include "neighbourhood.hpp"
+#include <taut/neighbors/neighbourhood.hpp>
 
 #include <algorithm>
 #include <cstring>
 #include <limits>
 
-#include "lanes.hpp"
+#include <taut/neighbors/lanes.hpp>
 
 namespace taut::detail::inline TAUT_SIMD_NAMESPACE {
 namespace {

@@ -1,13 +1,13 @@
-#include "pair_list_builder.hpp"
+#include <taut/neighbors/pair_list_builder.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
-#include <taut/core/error.hpp>
+#include <taut/base/error.hpp>
 #include <type_traits>
 
-#include "parallel.hpp"
+#include <taut/neighbors/parallel.hpp>
 
 namespace taut {
 

@@ -1,11 +1,11 @@
-#include "pair_test.hpp"
+#include <taut/neighbors/pair_test.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
-#include "lanes.hpp"
+#include <taut/neighbors/lanes.hpp>
 
 namespace taut::detail::inline TAUT_SIMD_NAMESPACE {
 namespace {

@@ -1,12 +1,12 @@
-#include "point_check.hpp"
+#include <taut/neighbors/point_check.hpp>
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <string>
-#include <taut/core/error.hpp>
+#include <taut/base/error.hpp>
 
-#include "parallel.hpp"
+#include <taut/neighbors/parallel.hpp>
 
 namespace taut::detail {
 namespace {

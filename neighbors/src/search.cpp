@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
-#include <taut/core/error.hpp>
+#include <taut/base/error.hpp>
 #include <taut/neighbors/search.hpp>
 
-#include "kd_tree.hpp"
-#include "search_variants.hpp"
-#include "slice_search.hpp"
+#include <taut/neighbors/kd_tree.hpp>
+#include <taut/neighbors/search_variants.hpp>
+#include <taut/neighbors/slice_search.hpp>
 
 namespace taut {
 namespace {

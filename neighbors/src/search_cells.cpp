@@ -1,5 +1,5 @@
-#include "cell_search.hpp"
-#include "slice_search.hpp"
+#include <taut/neighbors/cell_search.hpp>
+#include <taut/neighbors/slice_search.hpp>
 
 namespace taut::detail::inline TAUT_SIMD_NAMESPACE {
 

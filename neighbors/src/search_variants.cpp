@@ -1,6 +1,6 @@
-#include "search_variants.hpp"
+#include <taut/neighbors/search_variants.hpp>
 
-#include "simd.hpp"
+#include <taut/neighbors/simd.hpp>
 
 namespace taut::detail {
 namespace {

@@ -1,10 +1,10 @@
-#include "slice_encoder.hpp"
+#include <taut/neighbors/slice_encoder.hpp>
 
 #include <algorithm>
 #include <bit>
 #include <cstring>
 
-#include "lanes.hpp"
+#include <taut/neighbors/lanes.hpp>
 
 namespace taut::detail::inline TAUT_SIMD_NAMESPACE {
 namespace {

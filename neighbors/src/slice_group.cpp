@@ -1,4 +1,4 @@
-#include "slice_group.hpp"
+#include <taut/neighbors/slice_group.hpp>
 
 #include <algorithm>
 

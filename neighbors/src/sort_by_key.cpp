@@ -1,4 +1,4 @@
-#include "sort_by_key.hpp"
+#include <taut/neighbors/sort_by_key.hpp>
 
 #include <omp.h>
 

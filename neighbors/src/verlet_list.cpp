@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <taut/core/error.hpp>
+#include <taut/base/error.hpp>
 #include <taut/neighbors/verlet_list.hpp>
 
-#include "parallel.hpp"
+#include <taut/neighbors/parallel.hpp>
 
 namespace taut {
 

@@ -2,7 +2,7 @@
 #include <doctest/doctest.h>
 #include <omp.h>
 
-#include <taut/core/error.hpp>
+#include <taut/base/error.hpp>
 
 #include "discretised.hpp"
 

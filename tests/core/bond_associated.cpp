@@ -1,7 +1,7 @@
 // The bond-associated form: forces from an energy, exact on linear motions, and no zero-energy modes.
 #include <doctest/doctest.h>
 
-#include <taut/core/error.hpp>
+#include <taut/base/error.hpp>
 
 #include "discretised.hpp"
 

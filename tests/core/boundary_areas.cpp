@@ -1,8 +1,8 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <taut/core/geometry.hpp>
-#include <taut/core/simulation.hpp>
+#include <taut/geometry/geometry.hpp>
+#include <taut/simulation/simulation.hpp>
 
 #include "discretised.hpp"
 

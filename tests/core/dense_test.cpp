@@ -3,7 +3,7 @@
 
 #include <cmath>
 #include <scaling/dense_steps.hpp>
-#include <taut/core/kernel.hpp>
+#include <taut/kernels/kernel.hpp>
 #include <taut/taut.hpp>
 #include <vector>
 

@@ -3,7 +3,7 @@
 
 #include <limits>
 #include <materials/support.hpp>
-#include <taut/core/derived.hpp>
+#include <taut/output/derived.hpp>
 
 using namespace taut;
 

@@ -9,9 +9,9 @@
 #include <cmath>
 #include <memory>
 #include <random>
-#include <taut/core/formulation.hpp>
-#include <taut/core/operators.hpp>
-#include <taut/internal/assembly.hpp>
+#include <taut/formulations/formulation.hpp>
+#include <taut/operators/operators.hpp>
+#include <taut/formulations/assembly.hpp>
 #include <taut/neighbors/search.hpp>
 #include <taut/taut.hpp>
 #include <utility>

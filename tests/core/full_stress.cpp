@@ -2,7 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <filesystem>
-#include <taut/core/error.hpp>
+#include <taut/base/error.hpp>
 #include <taut/taut.hpp>
 
 #include "discretised.hpp"

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
-#include <taut/core/error.hpp>
-#include <taut/core/geometry.hpp>
+#include <taut/base/error.hpp>
+#include <taut/geometry/geometry.hpp>
 
 using taut::Cloud;
 using taut::InputError;

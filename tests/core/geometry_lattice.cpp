@@ -5,8 +5,8 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
-#include <taut/core/error.hpp>
-#include <taut/core/geometry.hpp>
+#include <taut/base/error.hpp>
+#include <taut/geometry/geometry.hpp>
 #include <tuple>
 
 using std::numbers::pi;

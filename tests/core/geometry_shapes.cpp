@@ -2,8 +2,8 @@
 
 #include <cmath>
 #include <limits>
-#include <taut/core/error.hpp>
-#include <taut/core/geometry.hpp>
+#include <taut/base/error.hpp>
+#include <taut/geometry/geometry.hpp>
 
 using taut::InputError;
 using taut::Shape;

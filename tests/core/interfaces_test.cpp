@@ -3,7 +3,7 @@
 #include <omp.h>
 
 #include <cstring>
-#include <taut/core/stress_recovery.hpp>
+#include <taut/output/stress_recovery.hpp>
 
 #include "discretised.hpp"
 

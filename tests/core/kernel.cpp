@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 #include <string>
-#include <taut/core/error.hpp>
-#include <taut/core/kernel.hpp>
+#include <taut/base/error.hpp>
+#include <taut/kernels/kernel.hpp>
 
 using taut::Kernel;
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <string>
-#include <taut/core/error.hpp>
-#include <taut/internal/kernel_table.hpp>
+#include <taut/base/error.hpp>
+#include <taut/kernels/kernel_table.hpp>
 
 using taut::Kernel;
 using taut::KernelTable;

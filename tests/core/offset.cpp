@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <taut/internal/local_origin.hpp>
+#include <taut/geometry/local_origin.hpp>
 
 #include "discretised.hpp"
 

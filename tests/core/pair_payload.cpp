@@ -7,11 +7,11 @@
 #include <cmath>
 #include <numeric>
 #include <string>
-#include <taut/core/auto_method.hpp>
-#include <taut/core/error.hpp>
-#include <taut/core/formulation.hpp>
-#include <taut/internal/assembly.hpp>
-#include <taut/internal/pair_payload.hpp>
+#include <taut/formulations/auto_method.hpp>
+#include <taut/base/error.hpp>
+#include <taut/formulations/formulation.hpp>
+#include <taut/formulations/assembly.hpp>
+#include <taut/operators/pair_payload.hpp>
 #include <vector>
 
 #include "discretised.hpp"

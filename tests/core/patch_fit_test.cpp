@@ -2,8 +2,8 @@
 #include <doctest/doctest.h>
 
 #include <random>
-#include <taut/core/error.hpp>
-#include <taut/core/patch_fit.hpp>
+#include <taut/base/error.hpp>
+#include <taut/operators/patch_fit.hpp>
 
 #include "discretised.hpp"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <taut/core/geometry.hpp>
-#include <taut/internal/spacing.hpp>
+#include <taut/geometry/geometry.hpp>
+#include <taut/geometry/spacing.hpp>
 
 #include "discretised.hpp"
 

@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
-#include <taut/core/error.hpp>
-#include <taut/core/simulation.hpp>
+#include <taut/base/error.hpp>
+#include <taut/simulation/simulation.hpp>
 
 using namespace taut;
 

@@ -6,8 +6,8 @@
 #include <Eigen/LU>
 #include <cstring>
 #include <numbers>
-#include <taut/core/error.hpp>
-#include <taut/internal/material_groups.hpp>
+#include <taut/base/error.hpp>
+#include <taut/particles/material_groups.hpp>
 
 #include "discretised.hpp"
 

@@ -1,8 +1,8 @@
 // Recovered stresses: exact where the formulation is, blind to other bodies and materials.
 #include <doctest/doctest.h>
 
-#include <taut/core/error.hpp>
-#include <taut/core/stress_recovery.hpp>
+#include <taut/base/error.hpp>
+#include <taut/output/stress_recovery.hpp>
 
 #include "discretised.hpp"
 

@@ -1,5 +1,5 @@
 // A part of a body with symmetry planes moves as the same part of the whole body.
-#include <taut/core/auto_method.hpp>
+#include <taut/formulations/auto_method.hpp>
 #include <doctest/doctest.h>
 
 #include "discretised.hpp"

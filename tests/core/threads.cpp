@@ -3,7 +3,7 @@
 #include <omp.h>
 
 #include <cstring>
-#include <taut/internal/material_groups.hpp>
+#include <taut/particles/material_groups.hpp>
 
 #include "discretised.hpp"
 

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
-#include <taut/internal/powers.hpp>
+#include <taut/base/powers.hpp>
 #include <taut/taut.hpp>
 #include <vector>
 

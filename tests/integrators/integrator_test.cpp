@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <taut/core/error.hpp>
+#include <taut/base/error.hpp>
 #include <taut/integrators/integrator.hpp>
 #include <taut/integrators/relax.hpp>
 #include <taut/integrators/vector_ops.hpp>

@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/SVD>
-#include <taut/core/error.hpp>
+#include <taut/base/error.hpp>
 
 #include "support.hpp"
 

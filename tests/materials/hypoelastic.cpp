@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
 #include <functional>
-#include <taut/core/error.hpp>
+#include <taut/base/error.hpp>
 #include <taut/materials/hypoelastic_bar.hpp>
 
 #include "support.hpp"

@@ -1,6 +1,6 @@
 #include <doctest/doctest.h>
 
-#include <taut/core/error.hpp>
+#include <taut/base/error.hpp>
 
 #include "support.hpp"
 

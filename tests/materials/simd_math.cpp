@@ -2,7 +2,7 @@
 
 #include <cmath>
 #include <limits>
-#include <taut/internal/simd_math.hpp>
+#include <taut/base/simd_math.hpp>
 
 #include "support.hpp"
 

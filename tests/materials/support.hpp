@@ -10,7 +10,7 @@
 #include <memory>
 #include <random>
 #include <string>
-#include <taut/core/fields.hpp>
+#include <taut/base/fields.hpp>
 #include <taut/materials/material.hpp>
 #include <vector>
 

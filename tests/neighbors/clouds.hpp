@@ -11,7 +11,7 @@
 #include <set>
 #include <span>
 #include <string>
-#include <taut/core/error.hpp>
+#include <taut/base/error.hpp>
 #include <taut/neighbors/search.hpp>
 #include <utility>
 #include <vector>

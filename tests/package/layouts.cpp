@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <taut/core/formulation.hpp>
+#include <taut/formulations/formulation.hpp>
 #include <taut/integrators/integrator.hpp>
 #include <taut/taut.hpp>
 #include <utility>

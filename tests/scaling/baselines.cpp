@@ -8,8 +8,8 @@
 #include <scaling/lists.hpp>
 #include <scaling/traffic.hpp>
 #include <string>
-#include <taut/core/auto_method.hpp>
-#include <taut/core/error.hpp>
+#include <taut/formulations/auto_method.hpp>
+#include <taut/base/error.hpp>
 
 using namespace taut;
 using namespace taut::bench;

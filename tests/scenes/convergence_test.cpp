@@ -14,8 +14,8 @@
 #include <lib/results.hpp>
 #include <numbers>
 #include <program.hpp>
-#include <taut/core/auto_method.hpp>
-#include <taut/core/error.hpp>
+#include <taut/formulations/auto_method.hpp>
+#include <taut/base/error.hpp>
 
 using namespace taut;
 using namespace taut::bench;

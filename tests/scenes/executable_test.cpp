@@ -8,7 +8,7 @@
 #include <program.hpp>
 #include <scenes/malformed.hpp>
 #include <sstream>
-#include <taut/core/simulation.hpp>
+#include <taut/simulation/simulation.hpp>
 
 using taut::bench::read_file;
 using taut::test::fresh_folder;

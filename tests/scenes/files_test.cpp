@@ -6,7 +6,7 @@
 #include <lib/child.hpp>
 #include <lib/files.hpp>
 #include <program.hpp>
-#include <taut/core/error.hpp>
+#include <taut/base/error.hpp>
 
 using namespace taut;
 using namespace taut::bench;

@@ -9,7 +9,7 @@
 #include <lib/measure.hpp>
 #include <lib/results.hpp>
 #include <numbers>
-#include <taut/core/error.hpp>
+#include <taut/base/error.hpp>
 
 using namespace taut;
 using namespace taut::bench;

@@ -10,7 +10,7 @@
 #include <lib/results.hpp>
 #include <program.hpp>
 #include <scenes/malformed.hpp>
-#include <taut/core/simulation.hpp>
+#include <taut/simulation/simulation.hpp>
 #include <thread>
 
 using namespace taut::bench;

@@ -8,8 +8,8 @@
 #include <functional>
 #include <span>
 #include <taut/boundary/held_points.hpp>
-#include <taut/core/fields.hpp>
-#include <taut/core/types.hpp>
+#include <taut/base/fields.hpp>
+#include <taut/base/types.hpp>
 #include <vector>
 
 namespace taut {

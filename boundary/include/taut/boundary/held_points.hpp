@@ -4,8 +4,8 @@
 
 #include <functional>
 #include <memory>
-#include <taut/core/fields.hpp>
-#include <taut/core/types.hpp>
+#include <taut/base/fields.hpp>
+#include <taut/base/types.hpp>
 #include <unordered_map>
 #include <vector>
 

@@ -3,8 +3,8 @@
 /// Dead loads and body forces.
 
 #include <functional>
-#include <taut/core/fields.hpp>
-#include <taut/core/types.hpp>
+#include <taut/base/fields.hpp>
+#include <taut/base/types.hpp>
 #include <vector>
 
 namespace taut {

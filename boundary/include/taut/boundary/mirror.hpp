@@ -2,8 +2,8 @@
 /// \file
 /// Symmetry planes by mirrored neighbours.
 
-#include <taut/core/fields.hpp>
-#include <taut/core/types.hpp>
+#include <taut/base/fields.hpp>
+#include <taut/base/types.hpp>
 #include <vector>
 
 namespace taut {

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 #include <functional>
-#include <taut/core/fields.hpp>
+#include <taut/base/fields.hpp>
 #include <taut/integrators/dynamics.hpp>
 
 namespace taut {

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
-#include <taut/core/types.hpp>
+#include <taut/base/types.hpp>
 #include <vector>
 
 namespace taut {

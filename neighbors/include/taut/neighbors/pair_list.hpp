@@ -4,8 +4,8 @@
 
 #include <cstdint>
 #include <functional>
-#include <taut/core/fields.hpp>
-#include <taut/core/types.hpp>
+#include <taut/base/fields.hpp>
+#include <taut/base/types.hpp>
 
 namespace taut {
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <span>
 #include <string_view>
-#include <taut/core/fields.hpp>
+#include <taut/base/fields.hpp>
 #include <taut/neighbors/pair_list.hpp>
 #include <vector>
 

@@ -1,0 +1,161 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <taut/base/error.hpp>
+#include <taut/formulations/formulation.hpp>
+#include <taut/formulations/formulations.hpp>
+
+namespace taut {
+
+namespace {
+
+template <int D>
+struct Entry {
+  const char* name;
+  std::unique_ptr<Formulation<D>> (*make)(const FormulationSetup<D>&);
+  MaterialsMeet materials = MaterialsMeet::in_particles;
+};
+
+template <int D>
+const std::vector<Entry<D>>& formulation_registry() {
+  static const std::vector<Entry<D>> entries = {
+      {"tl_displacement", make_tl_displacement<D>, MaterialsMeet::in_twins},
+      {"tl_bond_associated", make_tl_bond_associated<D>, MaterialsMeet::in_twins},
+      {"tl_stress_points", make_tl_stress_points<D>, MaterialsMeet::in_cells},
+      {"ul_basic", make_ul_basic<D>},
+      {"ul_artificial_stress", make_ul_artificial_stress<D>},
+  };
+  return entries;
+}
+
+}  // namespace
+
+std::vector<std::string> formulation_names() {
+  std::vector<std::string> names;
+  for (const auto& entry : formulation_registry<1>()) names.emplace_back(entry.name);
+  return names;
+}
+
+MaterialsMeet materials_meet(std::string_view formulation) {
+  for (const auto& entry : formulation_registry<1>())
+    if (formulation == entry.name) return entry.materials;
+  return MaterialsMeet::in_particles;
+}
+
+template <int D>
+std::unique_ptr<Formulation<D>> make_formulation(const FormulationSetup<D>& setup) {
+  for (const auto& entry : formulation_registry<D>())
+    if (setup.method.formulation == entry.name) return entry.make(setup);
+  throw InputError(fmt::format("unknown formulation \"{}\"; valid: {}", setup.method.formulation,
+                               join_names(formulation_names())));
+}
+
+namespace {
+// For each particle the nearest one that stands near by in memory, where order follows place: within the
+// reach of its pairs if it can be. Lone particles are their own companions.
+template <int D>
+std::vector<Index> companions(const Particles<D>& p, double reach) {
+  constexpr Index near = 4, far = 2048;
+  std::vector<Index> companion(static_cast<std::size_t>(p.n));
+#pragma omp parallel for schedule(static) if (p.n > 65536)
+  for (Index i = 0; i < p.n; ++i) {
+    const Vec<D> X = p.X.template vec<D>(i);
+    Index nearest = i;
+    double least = reach * reach;
+    for (Index k = 1; k <= far && (k <= near || nearest == i); ++k)
+      for (const Index j : {i - k, i + k}) {
+        if (j < 0 || j >= p.n) continue;
+        const double r2 = (p.X.template vec<D>(j) - X).squaredNorm();
+        if (!(r2 < least)) continue;
+        least = r2;
+        nearest = j;
+      }
+    companion[static_cast<std::size_t>(i)] = nearest;
+  }
+  return companion;
+}
+}  // namespace
+
+template <int D>
+Formulation<D>::Formulation(const FormulationSetup<D>& setup)
+    : p_(setup.particles),
+      constraints_(setup.constraints),
+      loads_(setup.loads),
+      method_(setup.method),
+      companion_(companions<D>(setup.particles, setup.method.support_dx * setup.particles.dx)) {}
+
+template <int D>
+void Formulation<D>::finish_accelerations(double t) {
+  loads_.add_to(t, p_.m, p_.a);
+  if (!p_.ties.empty()) p_.tie(p_.a);
+  constraints_.apply_to_accelerations(p_.a);
+}
+
+template <int D>
+void Formulation<D>::inspect() {
+  // Neighbours of no elastic body part faster than its waves by this much; those that do are flying apart.
+  // However fast a body flies or spins as a whole, they do not part.
+  constexpr double runaway = 20;
+  double speed = 0;
+  for (const auto& material : p_.materials) speed = std::max(speed, material->wave_speed());
+  for (Index i = 0; i < p_.n; ++i) {
+    const Vec<D> v = p_.v.template vec<D>(i);
+    const double apart = (v - p_.v.template vec<D>(companion_[static_cast<std::size_t>(i)])).squaredNorm();
+    if (apart <= runaway * runaway * speed * speed) continue;
+    const bool finite = v.allFinite();
+    if (!finite || std::isfinite(apart)) {
+      failure_ = Failure{finite ? "runaway energy" : "not a number", i};
+      return;
+    }
+    // Of the two it is the companion that is no number, or their difference that overflows.
+    const Index other = companion_[static_cast<std::size_t>(i)];
+    const bool both = p_.v.template vec<D>(other).allFinite();
+    failure_ = Failure{both ? "runaway energy" : "not a number", both ? i : other};
+    return;
+  }
+}
+
+template <int D>
+Mat<3> Formulation<D>::full_cauchy_stress(Index i) const {
+  Mat<3> sigma = Mat<3>::Zero();
+  sigma.template topLeftCorner<D, D>() = cauchy_stress(i);
+  const Plane plane = p_.materials[p_.material[static_cast<std::size_t>(i)]]->parameters().plane;
+  if (!(D == 2 && plane == Plane::stress))
+    for (int k = D; k < 3; ++k) sigma(k, k) = std::numeric_limits<double>::quiet_NaN();
+  return sigma;
+}
+
+template <int D>
+Mat<D> Formulation<D>::deformation_gradient(Index) const {
+  throw InputError(fmt::format("{} has no deformation gradient: it keeps no reference configuration", method_.formulation));
+}
+
+template <int D>
+Mat<D> Formulation<D>::first_piola_kirchhoff(Index) const {
+  throw InputError(
+      fmt::format("{} has no first Piola-Kirchhoff stress: it keeps no reference configuration", method_.formulation));
+}
+
+template <int D>
+void Formulation<D>::visit_stresses(const std::function<void(const StressSample<D>&)>&) const {
+  throw InputError(fmt::format(
+      "{} keeps no reference configuration, in which stresses could be recovered; total Lagrangian forms do",
+      method_.formulation));
+}
+
+template <int D>
+double Formulation<D>::strain_energy() const {
+  throw InputError(fmt::format("{} has no stored energy", method_.formulation));
+}
+
+#define TAUT_INSTANTIATE(D)      \
+  template class Formulation<D>; \
+  template std::unique_ptr<Formulation<D>> make_formulation<D>(const FormulationSetup<D>&);
+TAUT_INSTANTIATE(1)
+TAUT_INSTANTIATE(2)
+TAUT_INSTANTIATE(3)
+#undef TAUT_INSTANTIATE
+
+}  // namespace taut

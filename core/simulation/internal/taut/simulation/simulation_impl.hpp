@@ -1,0 +1,86 @@
+#pragma once
+/// \file
+/// What a Simulation is made of; shared by its set-up, its loops and its look at the state.
+
+#include <functional>
+#include <memory>
+#include <taut/boundary/constraints.hpp>
+#include <taut/boundary/loads.hpp>
+#include <taut/boundary/mirror.hpp>
+#include <taut/formulations/formulation.hpp>
+#include <taut/simulation/simulation.hpp>
+#include <taut/integrators/integrator.hpp>
+#include <taut/integrators/step_control.hpp>
+#include <taut/operators/facet_rows.hpp>
+#include <taut/particles/interfaces.hpp>
+#include <taut/simulation/health_watch.hpp>
+#include <vector>
+
+namespace taut {
+
+template <int D>
+struct SimulationImpl {
+  struct Observer {
+    double interval, next;
+    std::function<void(double)> f;
+  };
+
+  Cloud<D> cloud;  // in coordinates of its own, from cloud.origin; users see positions from theirs
+  Method method;
+  std::vector<std::shared_ptr<const Material<D>>> materials;
+  std::vector<std::uint8_t> material;  // of each user's particle
+  std::unique_ptr<Interfaces<D>> interfaces;  // where cells are known and there are several materials
+  std::vector<typename MirrorMap<D>::Plane> planes;  // in the cloud's coordinates
+  std::vector<std::function<void()>> conditions;  // boundary conditions, applied when places are known
+  std::function<Vec<D>(const Vec<D>&)> initial_velocity, initial_displacement;
+  std::vector<Observer> observers;
+
+  Particles<D> particles;
+  FacetRows<D> facet_rows;  // of the cloud's facets, once particles are in place
+  Constraints<D> constraints;
+  Loads<D> loads;
+  std::unique_ptr<Formulation<D>> formulation;
+  StepControl step_control;
+  std::function<void()> complete_velocities;  // while a run leaves them at half steps
+  double time = 0, setup_seconds = 0;
+  Health health_of_setup, health;  // the latter with that of the last run
+  HealthBalance<D> balance;        // at the start of runs that conserve energy
+
+  // To be called before velocities are read.
+  void look() const {
+    if (complete_velocities) complete_velocities();
+  }
+  Index place(std::size_t id) const { return particles.place.at(id); }
+  Vec<D> reference_position(std::size_t id) const { return cloud.origin + cloud.X.at(id); }
+  /// What a condition acts on: particles, and facets that none of them owns.
+  struct Selected {
+    std::vector<Index> particles, facets;
+  };
+  // Throws when a set-up call comes too late. Facets are selected by their centres.
+  Selected select(const Where<D>& where, const char* what) const;
+  std::vector<Index> select_particles(const Where<D>& where, const char* what) const;
+  void must_be_open(const char* what) const;
+  std::vector<Index> places(std::vector<Index> ids) const;  // all twins
+  // The interfaces, if the method resolves them; else null.
+  const Interfaces<D>* met() const;
+  void hold(const Selected& selected, int axis, typename Constraints<D>::Displacement displacement);
+  void add_load(const Selected& selected, const Vec<D>& force, History history);
+  bool add_traction(const Selected& selected, const Vec<D>& force, const History& history);
+  void place_facets();
+};
+
+/// Whether steps of this length reach the end: not if they are lost in its rounding.
+bool advances(double end, double step);
+/// Times from now on at which histories are asked what a relaxation has ahead of it [s].
+template <int D>
+std::vector<double> relaxation_times(const SimulationImpl<D>& simulation, const RelaxOptions& options);
+
+/// Advances by `duration` [s]; the loop of Simulation::run.
+template <int D>
+RunResult integrate(SimulationImpl<D>& simulation, Integrator& integrator, double duration,
+                    const RunOptions& options);
+/// Relaxes to static equilibrium; the loop of Simulation::relax.
+template <int D>
+RunResult find_equilibrium(SimulationImpl<D>& simulation, const RelaxOptions& options);
+
+}  // namespace taut

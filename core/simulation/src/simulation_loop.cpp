@@ -1,0 +1,269 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <taut/integrators/relax.hpp>
+#include <taut/base/powers.hpp>
+#include <taut/simulation/simulation_impl.hpp>
+
+namespace taut {
+
+namespace {
+
+// Constraints, rates and accelerations of the present time.
+template <int D>
+void start(SimulationImpl<D>& s) {
+  s.formulation->constrain_positions(s.time);
+  s.formulation->constrain_velocities(s.time);
+  if (!s.formulation->evolved().empty()) s.formulation->update_rates(s.time);
+  s.formulation->update_accelerations(s.time);
+}
+
+/// What both loops do around a step: count, keep time, look for breakdowns.
+template <int D>
+class Loop {
+ public:
+  Loop(SimulationImpl<D>& simulation, bool undamped) : s_(simulation), watch_((start(s_), s_), undamped) {}
+
+  RunResult result;
+
+  /// Ends the run: no particle is to blame.
+  void give_up(const char* what) {
+    result.status = Status::broke;
+    result.breakdown = Breakdown{what, -1, {}, {}, s_.time, result.steps};
+  }
+  /// Whether the formulation still holds; else the result says how it broke.
+  bool intact();
+  /// Counts a step that ended at time t.
+  void stepped(double t) {
+    s_.time = t;
+    if (++result.steps % inspect_every == 0) s_.formulation->inspect();
+    watch_.stepped(result.steps);
+  }
+  /// Asks every now and then whether to go on.
+  bool stopped(const Progress& progress, double fraction) const {
+    return progress && result.steps % inspect_every == 0 && !progress(result.steps, s_.time, fraction);
+  }
+  /// `at_rest`: the run was on its way to a state of rest, and that alone counts.
+  RunResult finish(bool at_rest);
+
+ private:
+  // Steps between the checks that cost a sweep over the particles.
+  static constexpr std::int64_t inspect_every = 32;
+
+  SimulationImpl<D>& s_;
+  HealthWatch<D> watch_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+template <int D>
+bool Loop<D>::intact() {
+  const auto& failure = s_.formulation->failure();
+  if (!failure) return true;
+  const auto at = static_cast<std::size_t>(failure->particle);
+  Breakdown b;
+  b.what = failure->what;
+  b.particle = s_.particles.id[at];
+  for (int d = 0; d < D; ++d) {
+    const auto axis = static_cast<std::size_t>(d);
+    const double X = s_.particles.X.component(d)[at], origin = s_.particles.origin[d];
+    b.X[axis] = origin + X;
+    b.x[axis] = origin + (X + s_.particles.u.component(d)[at]);
+  }
+  b.time = s_.time;
+  b.step = result.steps;
+  result.status = Status::broke;
+  result.breakdown = b;
+  return false;
+}
+
+template <int D>
+RunResult Loop<D>::finish(bool at_rest) {
+  const bool broke = !intact();
+  result.time = s_.time;
+  result.rebuilds = s_.formulation->rebuilds();
+  result.loop_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  s_.health = result.health = watch_.finish(at_rest, broke);
+  return result;
+}
+
+// Lets whoever looks at velocities have them completed, for as long as it lives.
+template <int D>
+class CompletingVelocities {
+ public:
+  CompletingVelocities(SimulationImpl<D>& s, Integrator& integrator) : s_(s) {
+    s.complete_velocities = [&] { integrator.complete(*s.formulation, s.time); };
+  }
+  ~CompletingVelocities() { s_.complete_velocities = {}; }
+  CompletingVelocities(const CompletingVelocities&) = delete;
+  CompletingVelocities& operator=(const CompletingVelocities&) = delete;
+
+ private:
+  SimulationImpl<D>& s_;
+};
+
+template <int D>
+void notify(SimulationImpl<D>& s) {
+  for (auto& o : s.observers)
+    if (s.time >= o.next) {
+      s.look();  // before observers may read from many threads
+      o.f(s.time);
+      o.next = o.interval > 0 ? o.interval * (std::floor(s.time / o.interval * (1 + 1e-12)) + 1) : s.time;
+    }
+}
+
+// Whether displacements and velocities are small enough to be computed with.
+template <int D>
+bool has_numbers(const Particles<D>& p) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(p.n); ++i)
+    if (!std::isfinite(p.u.template vec<D>(i).squaredNorm() + p.v.template vec<D>(i).squaredNorm())) return false;
+  return true;
+}
+
+// No force is applied and no prescribed displacement changes, now or later.
+template <int D>
+bool is_left_alone(const SimulationImpl<D>& s, const std::vector<double>& times) {
+  for (const double t : times)
+    if (s.loads.norm(t, s.particles.m) != 0) return false;
+  return !s.constraints.move_later(s.time, times, s.particles.X);
+}
+
+// Out-of-balance force [N] that rounding of the state (displacements, or positions where stresses follow from rates) can make: rounded strains, times the modulus,
+// on the faces of a cell, for all particles.
+template <int D>
+double force_of_round_off(const SimulationImpl<D>& s) {
+  double modulus = 0, farthest = 0;
+  for (const auto& material : s.particles.materials)
+    modulus = std::max(modulus, material->density() * material->wave_speed() * material->wave_speed());
+  const bool rates = !s.formulation->evolved().empty();
+  for (int d = 0; d < D; ++d)
+    for (Index i = 0; i < s.particles.n; ++i)
+      farthest = std::max(farthest, std::abs(s.particles.u.component(d)[i] + (rates ? s.particles.X.component(d)[i] : 0)));
+  constexpr double roundings = 8;
+  return roundings * std::numeric_limits<double>::epsilon() * std::sqrt(static_cast<double>(s.particles.n)) *
+         modulus * farthest * int_power(s.particles.dx, D - 2);
+}
+
+}  // namespace
+
+bool advances(double end, double step) { return end - step < end; }
+
+template <int D>
+std::vector<double> relaxation_times(const SimulationImpl<D>& s, const RelaxOptions& options) {
+  const double step = options.cfl * s.formulation->stable_step();
+  std::vector<double> times{s.time, s.time + options.ramp_time, s.time + options.free_time};
+  for (double steps = 1; steps <= static_cast<double>(options.max_steps) && steps <= 1e9; steps *= 10)
+    times.push_back(s.time + steps * step);
+  return times;
+}
+
+const char* to_string(Status status) {
+  switch (status) {
+    case Status::ok:
+      return "ok";
+    case Status::broke:
+      return "broke";
+    case Status::not_converged:
+      return "not_converged";
+  }
+  return "";
+}
+
+template <int D>
+RunResult integrate(SimulationImpl<D>& s, Integrator& integrator, double duration,
+                    const RunOptions& options) {
+  const double end = s.time + duration;
+  Loop<D> loop(s, true);
+  const CompletingVelocities completing(s, integrator);
+  notify(s);
+  while (s.time < end && loop.intact()) {
+    double bound = options.cfl * s.formulation->stable_step();
+    if (options.max_step > 0) bound = std::min(bound, options.max_step);
+    double dt = s.step_control.next(bound);
+    if (!advances(end, dt)) {
+      loop.give_up(std::isfinite(dt) && has_numbers(s.particles) ? "step too small to advance time" : "not a number");
+      break;
+    }
+    // No sliver of a step that rounding has left.
+    const bool last = s.time + dt >= end - 1e-6 * dt;
+    if (last) dt = end - s.time;
+    integrator.step(*s.formulation, s.time, dt);
+    loop.stepped(last ? end : s.time + dt);
+    notify(s);
+    if (options.progress && !options.progress(loop.result.steps, s.time, 1 - (end - s.time) / duration))
+      break;
+  }
+  s.look();
+  return loop.finish(false);
+}
+
+template <int D>
+RunResult find_equilibrium(SimulationImpl<D>& s, const RelaxOptions& options) {
+  const double start = s.time;
+  if (options.ramp_time > 0)
+    s.loads.set_ramp([start, T = options.ramp_time](double t) {
+      const double q = std::clamp((t - start) / T, 0.0, 1.0);
+      return q * q * (3 - 2 * q);
+    });
+  Loop<D> loop(s, false);
+  RunResult& result = loop.result;
+  result.status = Status::not_converged;
+  const auto undamped = make_integrator("leapfrog");
+  bool stopped = false;
+  while (!stopped && s.time - start < options.free_time && result.steps < options.max_steps &&
+         loop.intact()) {
+    const double dt = s.step_control.next(options.cfl * s.formulation->stable_step());
+    undamped->step(*s.formulation, s.time, dt);
+    loop.stepped(s.time + dt);
+    stopped = loop.stopped(options.progress, 0);
+  }
+  undamped->complete(*s.formulation, s.time);
+  Relaxation relaxation(*s.formulation);
+  double largest = 0;
+  // Where nothing is applied and nothing will be, round-off must not be compared with round-off.
+  const bool left_alone = is_left_alone(s, relaxation_times(s, options));
+  const double round_off = left_alone ? force_of_round_off(s) : 0;
+  // A passing coincidence of small forces is no equilibrium: they must stay small.
+  constexpr int in_a_row = 20;
+  int converged = 0;
+  while (!stopped && result.steps < options.max_steps && loop.intact()) {
+    const double dt = options.cfl * s.formulation->stable_step();
+    if (!(dt > 0) || !std::isfinite(dt)) {
+      loop.give_up(dt == 0 && has_numbers(s.particles) ? "step too small to advance time" : "not a number");
+      break;
+    }
+    relaxation.step(s.time, dt);
+    loop.stepped(s.time + dt);
+    largest = std::max(largest, relaxation.force_norm());
+    const double applied = s.loads.norm(s.time, s.particles.m);
+    const double scale = applied > 0 ? applied : largest;
+    result.residual = scale > 0 ? relaxation.force_norm() / scale : 0;
+    const double progress = std::log(std::max(result.residual, 1e-300)) / std::log(options.tolerance);
+    stopped = loop.stopped(options.progress, std::min(1.0, progress));
+    result.remaining_motion = relaxation.remaining_motion();
+    // Nothing has moved yet, but will.
+    const bool waits = scale == 0 && !left_alone;
+    const bool small =
+        !waits && s.time - start >= options.ramp_time &&
+        ((left_alone && relaxation.force_norm() <= round_off) ||
+         (result.residual <= options.tolerance &&
+          (result.remaining_motion <= RelaxOptions::still_moving || result.residual == 0)));
+    converged = small ? converged + 1 : 0;
+    if (converged == in_a_row) {
+      result.status = Status::ok;
+      break;
+    }
+  }
+  return loop.finish(true);
+}
+
+#define TAUT_INSTANTIATE(D)                                                                    \
+  template std::vector<double> relaxation_times<D>(const SimulationImpl<D>&, const RelaxOptions&); \
+  template RunResult integrate<D>(SimulationImpl<D>&, Integrator&, double, const RunOptions&); \
+  template RunResult find_equilibrium<D>(SimulationImpl<D>&, const RelaxOptions&);
+TAUT_INSTANTIATE(1)
+TAUT_INSTANTIATE(2)
+TAUT_INSTANTIATE(3)
+#undef TAUT_INSTANTIATE
+
+}  // namespace taut
