@@ -8,8 +8,8 @@
 #include <lib/names.hpp>
 #include <lib/progress.hpp>
 #include <lib/scene_loader.hpp>
-#include <taut/formulations/auto_method.hpp>
 #include <taut/base/error.hpp>
+#include <taut/formulations/auto_method.hpp>
 
 namespace taut::bench {
 namespace {

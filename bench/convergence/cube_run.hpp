@@ -2,11 +2,11 @@
 /// \file
 /// One run of the swinging cube, by a method of the library or by finite elements.
 
-#include <taut/formulations/auto_method.hpp>
 #include <convergence/swinging_cube.hpp>
 #include <lib/results.hpp>
 #include <optional>
 #include <string>
+#include <taut/formulations/auto_method.hpp>
 
 namespace taut::bench {
 

@@ -1,4 +1,3 @@
-#include <taut/formulations/auto_method.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +8,7 @@
 #include <lib/names.hpp>
 #include <lib/progress.hpp>
 #include <set>
+#include <taut/formulations/auto_method.hpp>
 
 namespace taut::bench {
 namespace {

@@ -13,8 +13,8 @@
 #include <lib/progress.hpp>
 #include <lib/scene_loader.hpp>
 #include <numeric>
-#include <taut/formulations/auto_method.hpp>
 #include <taut/base/error.hpp>
+#include <taut/formulations/auto_method.hpp>
 
 namespace taut::bench {
 namespace {
@@ -127,7 +127,8 @@ bool worth_repeating(const Choice& c) {
   return c.row.status != "skipped" && std::accumulate(c.loop_s.begin(), c.loop_s.end(), 0.0) < long_s;
 }
 
-/// Size of the error, of suspect runs too: that is what is studied. Nothing for a run that broke or was skipped.
+/// Size of the error, of suspect runs too: that is what is studied. Nothing for a run that broke or was
+/// skipped.
 std::optional<double> error_size(const Row& row) {
   if (row.status == "broke" || row.status == "skipped" || !row.error || !std::isfinite(*row.error)) return {};
   return std::abs(*row.error);

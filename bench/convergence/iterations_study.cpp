@@ -1,4 +1,3 @@
-#include <taut/formulations/auto_method.hpp>
 #include <fmt/format.h>
 
 #include <cmath>
@@ -8,6 +7,7 @@
 #include <lib/case.hpp>
 #include <lib/progress.hpp>
 #include <lib/scene_loader.hpp>
+#include <taut/formulations/auto_method.hpp>
 
 namespace taut::bench {
 namespace {

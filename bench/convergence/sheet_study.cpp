@@ -7,8 +7,8 @@
 #include <convergence/run_row.hpp>
 #include <lib/names.hpp>
 #include <lib/progress.hpp>
-#include <taut/formulations/auto_method.hpp>
 #include <taut/base/error.hpp>
+#include <taut/formulations/auto_method.hpp>
 #include <taut/simulation/simulation.hpp>
 
 namespace taut::bench {

@@ -2,8 +2,8 @@
 #include <lib/build.hpp>
 #include <lib/scene_parts.hpp>
 #include <limits>
-#include <taut/operators/operators.hpp>
 #include <taut/geometry/local_origin.hpp>
+#include <taut/operators/operators.hpp>
 
 namespace taut::bench {
 namespace {

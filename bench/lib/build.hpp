@@ -15,8 +15,8 @@ Cloud<D> build_cloud(const Scene& scene, const RunSpec& run, const SweepPoint& p
 template <int D>
 Simulation<D> build_simulation(const Scene& scene, const RunSpec& run, const SweepPoint& point);
 
-/// Whether the particles of the scene's file lie inside of the body's surface, as centroids of elements do; false for a file
-/// that cannot be read.
+/// Whether the particles of the scene's file lie inside of the body's surface, as centroids of elements do;
+/// false for a file that cannot be read.
 bool has_centroids(const Scene& scene);
 
 /// Whether a point lies in the scene's shape (not a cloud from a file) or about `distance` [m] from it.

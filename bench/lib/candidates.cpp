@@ -1,4 +1,3 @@
-#include <taut/formulations/auto_method.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +8,7 @@
 #include <lib/names.hpp>
 #include <lib/reference.hpp>
 #include <lib/results.hpp>
+#include <taut/formulations/auto_method.hpp>
 
 namespace taut::bench {
 namespace {
@@ -276,8 +276,10 @@ void predict(Candidate& candidate, double tolerance, double edge, double finest,
   }
   // Pilots may be too coarse to be trusted; the last one tells what refinement leads to.
   if (s.back().suspect()) {
-    const auto of = std::find_if(s.back().cases.begin(), s.back().cases.end(), [](const CaseResult& c) { return c.suspect(); });
-    candidate.out = fmt::format("suspect{}: {}", s.back().dx > 0 ? fmt::format(" at dx {:.3g} mm", s.back().dx * 1e3) : "",
+    const auto of = std::find_if(s.back().cases.begin(), s.back().cases.end(),
+                                 [](const CaseResult& c) { return c.suspect(); });
+    candidate.out = fmt::format("suspect{}: {}",
+                                s.back().dx > 0 ? fmt::format(" at dx {:.3g} mm", s.back().dx * 1e3) : "",
                                 of->health.complaints());
     return;
   }

@@ -10,8 +10,8 @@
 #include <lib/reference.hpp>
 #include <lib/scene_keys.hpp>
 #include <limits>
-#include <taut/output/derived.hpp>
 #include <taut/geometry/local_origin.hpp>
+#include <taut/output/derived.hpp>
 
 namespace taut::bench {
 namespace {
@@ -128,7 +128,8 @@ std::string unmet(const RunResult& run, double tolerance) {
     return fmt::format("out-of-balance force {:.2g} of the load, wanted {:.2g}", run.residual, tolerance);
   if (run.remaining_motion > RelaxOptions::still_moving)
     return fmt::format(
-        "forces balance to {:.2g} of the load, but the body still moves: {:.2g} of its way is left, wanted {:.2g}",
+        "forces balance to {:.2g} of the load, but the body still moves: {:.2g} of its way is left, wanted "
+        "{:.2g}",
         run.residual, run.remaining_motion, RelaxOptions::still_moving);
   return "forces balance and the body is at rest, but not for long enough";
 }
@@ -231,8 +232,8 @@ CaseResult run(const Scene& scene, const RunSpec& spec, const SweepPoint& point,
   return result;
 }
 
-/// Whether a probe lies in the body, or next to it. Of a shape's lattice the shape says so, of layers beyond it
-/// their particles, and of a cloud its particles alone: then as far away as pairs reach, and no less than
+/// Whether a probe lies in the body, or next to it. Of a shape's lattice the shape says so, of layers beyond
+/// it their particles, and of a cloud its particles alone: then as far away as pairs reach, and no less than
 /// the spacing, also where it is wider than elsewhere, so that no point of the surface is taken for one
 /// outside.
 template <int D>
@@ -256,9 +257,10 @@ void check_probe(const Scene& scene, const RunSpec& spec, const Simulation<D>& s
       return fmt::format("({:g})", fmt::join(X.data(), X.data() + D, ", "));
     };
     fail(probe.at_place,
-         fmt::format("[probe] at: '{}' at {} m lies outside of the body, {:.3g} m from its nearest particle at {} m "
-                     "in the run '{}'; give a point of the body in its reference configuration",
-                     probe.name, text(sampler.at()), (nearest - sampler.at()).norm(), text(nearest), spec.label));
+         fmt::format(
+             "[probe] at: '{}' at {} m lies outside of the body, {:.3g} m from its nearest particle at {} m "
+             "in the run '{}'; give a point of the body in its reference configuration",
+             probe.name, text(sampler.at()), (nearest - sampler.at()).norm(), text(nearest), spec.label));
   }
   try {
     sampler();
@@ -280,9 +282,8 @@ void check(const Scene& scene, const RunSpec& spec, const SweepPoint& point) {
   }
   const std::vector<SweepPoint> points = scene.points();
   for (const ProbeSpec& probe : scene.probes)
-    if (std::any_of(points.begin(), points.end(), [&](const SweepPoint& p) {
-          return wanted(spec, p) && wanted(probe, spec, p);
-        }))
+    if (std::any_of(points.begin(), points.end(),
+                    [&](const SweepPoint& p) { return wanted(spec, p) && wanted(probe, spec, p); }))
       check_probe<D>(scene, spec, simulation, probe);
 }
 

@@ -27,7 +27,7 @@ struct Measured {
 
 /// The deformed body, for pictures.
 struct Snapshot {
-  std::vector<std::array<double, 3>> x;  ///< current positions [m]
+  std::vector<std::array<double, 3>> x;               ///< current positions [m]
   std::map<std::string, std::vector<double>> fields;  ///< by names of `picture_fields()` [Pa]
 };
 
@@ -54,8 +54,8 @@ struct CaseResult {
   /// It finished, but a measure of its health is beyond its limit.
   bool suspect() const { return !broke && health.suspect(); }
   /// Rows of results.csv: one a probe, in their order (those that this case does not take are marked
-  /// skipped), then `breakdown_time` [s] where it broke, then one a measure of health. A value that is missing
-  /// or not finite makes a row suspect.
+  /// skipped), then `breakdown_time` [s] where it broke, then one a measure of health. A value that is
+  /// missing or not finite makes a row suspect.
   std::vector<Row> rows(int threads) const;
 };
 

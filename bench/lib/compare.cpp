@@ -57,7 +57,8 @@ void check_scene(const Scene& scene, double limit) {
           reference_value(scene, run, point, probe);
           for (const PrintedSpec& printed : probe.printed) printed_value(probe, printed, point);
         }
-      // Loads change neither particles nor operators: one check for all of them, but for whether there are any.
+      // Loads change neither particles nor operators: one check for all of them, but for whether there are
+      // any.
       const auto load = point.find("load");
       const bool unloaded = load != point.end() && load->second == 0;
       const MaterialSpec material = material_of(scene, run, point);

@@ -11,8 +11,8 @@ namespace taut::bench {
 /// Text that may stand in HTML.
 std::string escaped(const std::string& text);
 
-/// A cell of a table: text and an optional class ("number", "good", "fair", "bad", "quiet", "wrap", "wide"; "#rrggbb"
-/// for a swatch).
+/// A cell of a table: text and an optional class ("number", "good", "fair", "bad", "quiet", "wrap", "wide";
+/// "#rrggbb" for a swatch).
 struct HtmlCell {
   std::string text;
   std::string kind;

@@ -2,8 +2,8 @@
 #include <taut/formulations/auto_method.hpp>
 #include <taut/formulations/formulation.hpp>
 #include <taut/kernels/kernel.hpp>
-#include <taut/operators/operators.hpp>
 #include <taut/materials/material.hpp>
+#include <taut/operators/operators.hpp>
 
 namespace taut::bench {
 

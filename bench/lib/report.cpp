@@ -82,9 +82,12 @@ std::string verdict(const SceneReport& part) {
     if (!best || s.loop_s < best_time) best = &group, best_time = s.loop_s;
   }
   if (!any_truth) return "The scene names no truth to compare with.";
-  if (!best) return fmt::format("No run that is not suspect finishes every case within {:g} % of the truth.", wanted * 100);
+  if (!best)
+    return fmt::format("No run that is not suspect finishes every case within {:g} % of the truth.",
+                       wanted * 100);
   return fmt::format(
-      "Cheapest run that finishes every case within {:g} % of the truth, none of them suspect: {} at dx {:g} mm, {} in its time "
+      "Cheapest run that finishes every case within {:g} % of the truth, none of them suspect: {} at dx {:g} "
+      "mm, {} in its time "
       "loops.",
       wanted * 100, best->run->label, best->dx * 1e3, duration(best_time));
 }
@@ -272,7 +275,10 @@ void write_cases(const Report& report, const std::filesystem::path& out) {
           fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", part.scene->name,
                       quoted(c.run->label), c.run->method.formulation, name_of(c.run->lattice.kind),
                       c.run->lattice.jitter, c.dx, value("load"), value("nu"), value("region_density"),
-                      c.broke ? "broke" : c.suspect() ? "suspect" : "ok", c.broke ? fmt::format("{}", c.broke_time) : "",
+                      c.broke       ? "broke"
+                      : c.suspect() ? "suspect"
+                                    : "ok",
+                      c.broke ? fmt::format("{}", c.broke_time) : "",
                       quoted(c.what + (c.where.empty() ? "" : "; " + c.where)), c.steps, c.time, c.loop_s);
     }
   write_file(out / "cases.csv", text);

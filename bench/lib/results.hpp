@@ -44,8 +44,8 @@ double error_of(double value, double reference, bool absolute);
 /// order of their names. \throws RunError
 void write_results(const std::filesystem::path& file, const std::vector<Row>& rows);
 
-/// What `write_results` wrote. \throws InputError "file:line: what" for a missing file, another header, or what is no
-/// number where one belongs.
+/// What `write_results` wrote. \throws InputError "file:line: what" for a missing file, another header, or
+/// what is no number where one belongs.
 std::vector<Row> read_results(const std::filesystem::path& file);
 
 /// A swept value as part of a quantity's name, to twelve digits: 1000 → "1000", -0.5 → "minus_0_5".

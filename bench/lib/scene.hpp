@@ -10,8 +10,8 @@
 #include <string>
 #include <taut/formulations/auto_method.hpp>
 #include <taut/geometry/geometry.hpp>
-#include <taut/operators/method.hpp>
 #include <taut/materials/material.hpp>
+#include <taut/operators/method.hpp>
 #include <utility>
 #include <vector>
 

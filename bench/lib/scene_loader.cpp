@@ -145,8 +145,9 @@ void check_probes(const Scene& scene) {
       if (run.solve.mode == "dynamic" && probe.window[0] > run.solve.duration)
         for (const SweepPoint& point : scene.points())
           if (wanted(run, point) && wanted(probe, run, point))
-            fail(probe.place, fmt::format("[probe] window: '{}' begins at {:g} s, after the end of the run '{}' at {:g} s",
-                                          probe.name, probe.window[0], run.label, run.solve.duration));
+            fail(probe.place,
+                 fmt::format("[probe] window: '{}' begins at {:g} s, after the end of the run '{}' at {:g} s",
+                             probe.name, probe.window[0], run.label, run.solve.duration));
   }
 }
 

@@ -2,8 +2,8 @@
 #include <scaling/dense_steps.hpp>
 #include <scaling/engine_step.hpp>
 #include <scaling/job.hpp>
-#include <taut/formulations/auto_method.hpp>
 #include <taut/base/error.hpp>
+#include <taut/formulations/auto_method.hpp>
 
 namespace taut::bench {
 namespace {

@@ -1,8 +1,8 @@
-#include <taut/formulations/auto_method.hpp>
 #include <fstream>
 #include <scaling/peak_memory.hpp>
 #include <scaling/step_case.hpp>
 #include <string>
+#include <taut/formulations/auto_method.hpp>
 
 namespace taut::bench {
 namespace {

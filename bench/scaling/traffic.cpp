@@ -1,9 +1,9 @@
 #include <scaling/engine_step.hpp>
 #include <scaling/traffic.hpp>
-#include <taut/kernels/kernel.hpp>
-#include <taut/operators/operators.hpp>
 #include <taut/formulations/assembly.hpp>
+#include <taut/kernels/kernel.hpp>
 #include <taut/neighbors/search.hpp>
+#include <taut/operators/operators.hpp>
 
 namespace taut::bench {
 namespace {

@@ -38,7 +38,8 @@ void Constraints<D>::apply_to_displacements(double t, const Field& X, Field& u) 
   }
   for (int d = 0; d < D; ++d)
     held_[static_cast<std::size_t>(d)].project(
-        u.component(d), [&](const Vec<D>& point, const Displacement& follow) { return follow ? follow(point, t) : 0; });
+        u.component(d),
+        [&](const Vec<D>& point, const Displacement& follow) { return follow ? follow(point, t) : 0; });
 }
 
 template <int D>
@@ -53,7 +54,8 @@ void Constraints<D>::apply_to_velocities(double t, const Field& X, Field& v, dou
   }
   for (int d = 0; d < D; ++d)
     held_[static_cast<std::size_t>(d)].project(
-        v.component(d), [&](const Vec<D>& point, const Displacement& follow) { return velocity(follow, point); });
+        v.component(d),
+        [&](const Vec<D>& point, const Displacement& follow) { return velocity(follow, point); });
 }
 
 template <int D>
@@ -63,14 +65,16 @@ void Constraints<D>::apply_to_accelerations(Field& a) const {
     for (const Index i : set.particles) as[i] = 0;
   }
   for (int d = 0; d < D; ++d)
-    held_[static_cast<std::size_t>(d)].project(a.component(d), [](const Vec<D>&, const Displacement&) { return 0.0; });
+    held_[static_cast<std::size_t>(d)].project(a.component(d),
+                                               [](const Vec<D>&, const Displacement&) { return 0.0; });
 }
 
 template <int D>
 std::vector<std::uint8_t> Constraints<D>::held(Index n) const {
   std::vector<std::uint8_t> bits(static_cast<std::size_t>(n), 0);
   for (const Set& set : sets_)
-    for (const Index i : set.particles) bits[static_cast<std::size_t>(i)] |= static_cast<std::uint8_t>(1 << set.axis);
+    for (const Index i : set.particles)
+      bits[static_cast<std::size_t>(i)] |= static_cast<std::uint8_t>(1 << set.axis);
   return bits;
 }
 

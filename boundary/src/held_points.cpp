@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
 #include <Eigen/SparseCholesky>
-#include <taut/boundary/held_points.hpp>
 #include <taut/base/error.hpp>
+#include <taut/boundary/held_points.hpp>
 #include <utility>
 
 namespace taut {

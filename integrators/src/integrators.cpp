@@ -49,7 +49,8 @@ std::vector<std::string> integrator_names() { return {"leapfrog", "central_diffe
 std::unique_ptr<Integrator> make_integrator(std::string_view name) {
   if (name == "leapfrog") return std::make_unique<Leapfrog>();
   if (name == "central_difference") return std::make_unique<CentralDifference>();
-  throw InputError("unknown integrator \"" + std::string(name) + "\"; valid: " + join_names(integrator_names()));
+  throw InputError("unknown integrator \"" + std::string(name) +
+                   "\"; valid: " + join_names(integrator_names()));
 }
 
 }  // namespace taut

@@ -1,5 +1,4 @@
 #include <taut/base/error.hpp>
-
 #include <taut/materials/lateral.hpp>
 #include <taut/materials/polar.hpp>
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <taut/base/error.hpp>
 #include <taut/materials/material.hpp>
-
 #include <taut/materials/models.hpp>
 
 namespace taut {

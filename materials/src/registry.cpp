@@ -26,7 +26,8 @@ std::vector<std::string> material_names() {
 }
 
 template <int D>
-std::shared_ptr<const Material<D>> make_material(std::string_view name, const MaterialParameters& parameters) {
+std::shared_ptr<const Material<D>> make_material(std::string_view name,
+                                                 const MaterialParameters& parameters) {
   struct Entry {
     std::string_view name;
     std::unique_ptr<Material<D>> (*make)(const MaterialParameters&);

@@ -1,11 +1,9 @@
-#include <taut/neighbors/cell_grid.hpp>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
 #include <memory>
-
+#include <taut/neighbors/cell_grid.hpp>
 #include <taut/neighbors/lanes.hpp>
 #include <taut/neighbors/parallel.hpp>
 #include <taut/neighbors/sort_by_key.hpp>

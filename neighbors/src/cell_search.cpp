@@ -1,7 +1,6 @@
-#include <taut/neighbors/cell_search.hpp>
-
 #include <cmath>
 #include <map>
+#include <taut/neighbors/cell_search.hpp>
 
 namespace taut::detail::inline TAUT_SIMD_NAMESPACE {
 namespace {

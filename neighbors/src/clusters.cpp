@@ -1,9 +1,7 @@
-#include <taut/neighbors/clusters.hpp>
-
 #include <algorithm>
-#include <utility>
-
+#include <taut/neighbors/clusters.hpp>
 #include <taut/neighbors/parallel.hpp>
+#include <utility>
 
 namespace taut::detail {
 namespace {

@@ -1,6 +1,5 @@
 #include <bit>
 #include <taut/neighbors/pair_list.hpp>
-
 #include <taut/neighbors/parallel.hpp>
 
 namespace taut {

@@ -1,8 +1,7 @@
-#include <taut/neighbors/kd_tree.hpp>
-
 #include <cmath>
 #include <map>
 #include <nanoflann.hpp>
+#include <taut/neighbors/kd_tree.hpp>
 
 namespace taut::detail::inline TAUT_SIMD_NAMESPACE {
 namespace {

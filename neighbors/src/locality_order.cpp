@@ -5,12 +5,11 @@
 #include <cmath>
 #include <numeric>
 #include <taut/base/error.hpp>
-#include <taut/neighbors/search.hpp>
-#include <unordered_set>
-
 #include <taut/neighbors/parallel.hpp>
 #include <taut/neighbors/point_check.hpp>
+#include <taut/neighbors/search.hpp>
 #include <taut/neighbors/sort_by_key.hpp>
+#include <unordered_set>
 
 namespace taut {
 namespace {

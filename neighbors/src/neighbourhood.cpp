@@ -1,10 +1,8 @@
-#include <taut/neighbors/neighbourhood.hpp>
-
 #include <algorithm>
 #include <cstring>
 #include <limits>
-
 #include <taut/neighbors/lanes.hpp>
+#include <taut/neighbors/neighbourhood.hpp>
 
 namespace taut::detail::inline TAUT_SIMD_NAMESPACE {
 namespace {

@@ -1,13 +1,11 @@
-#include <taut/neighbors/pair_list_builder.hpp>
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
 #include <taut/base/error.hpp>
-#include <type_traits>
-
+#include <taut/neighbors/pair_list_builder.hpp>
 #include <taut/neighbors/parallel.hpp>
+#include <type_traits>
 
 namespace taut {
 

@@ -1,11 +1,9 @@
-#include <taut/neighbors/pair_test.hpp>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-
 #include <taut/neighbors/lanes.hpp>
+#include <taut/neighbors/pair_test.hpp>
 
 namespace taut::detail::inline TAUT_SIMD_NAMESPACE {
 namespace {

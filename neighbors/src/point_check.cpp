@@ -1,12 +1,10 @@
-#include <taut/neighbors/point_check.hpp>
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <string>
 #include <taut/base/error.hpp>
-
 #include <taut/neighbors/parallel.hpp>
+#include <taut/neighbors/point_check.hpp>
 
 namespace taut::detail {
 namespace {

@@ -1,9 +1,8 @@
 #include <fmt/format.h>
 
 #include <taut/base/error.hpp>
-#include <taut/neighbors/search.hpp>
-
 #include <taut/neighbors/kd_tree.hpp>
+#include <taut/neighbors/search.hpp>
 #include <taut/neighbors/search_variants.hpp>
 #include <taut/neighbors/slice_search.hpp>
 

@@ -1,5 +1,4 @@
 #include <taut/neighbors/search_variants.hpp>
-
 #include <taut/neighbors/simd.hpp>
 
 namespace taut::detail {

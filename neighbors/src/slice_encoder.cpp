@@ -1,10 +1,8 @@
-#include <taut/neighbors/slice_encoder.hpp>
-
 #include <algorithm>
 #include <bit>
 #include <cstring>
-
 #include <taut/neighbors/lanes.hpp>
+#include <taut/neighbors/slice_encoder.hpp>
 
 namespace taut::detail::inline TAUT_SIMD_NAMESPACE {
 namespace {

@@ -1,6 +1,5 @@
-#include <taut/neighbors/slice_group.hpp>
-
 #include <algorithm>
+#include <taut/neighbors/slice_group.hpp>
 
 namespace taut::detail {
 namespace {

@@ -1,9 +1,8 @@
-#include <taut/neighbors/sort_by_key.hpp>
-
 #include <omp.h>
 
 #include <algorithm>
 #include <array>
+#include <taut/neighbors/sort_by_key.hpp>
 #include <vector>
 
 namespace taut::detail {

@@ -2,9 +2,8 @@
 
 #include <cmath>
 #include <taut/base/error.hpp>
-#include <taut/neighbors/verlet_list.hpp>
-
 #include <taut/neighbors/parallel.hpp>
+#include <taut/neighbors/verlet_list.hpp>
 
 namespace taut {
 

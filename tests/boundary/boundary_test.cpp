@@ -52,7 +52,8 @@ TEST_CASE("loads divide by the mass, follow their histories and the ramp") {
 TEST_CASE("mirror images stand where two planes put them, corner included") {
   const std::vector<Vec<2>> points = {{0, 0}, {1, 0}, {1, 2}, {5, 5}};
   const MirrorMap<2> mirror({{0, 0.0, 0}, {1, 0.0, 0}}, points, 3.0, 1e-9);
-  // (1,0): across x. (1,2): across x, across y, across both. The point on both planes and the far one have none.
+  // (1,0): across x. (1,2): across x, across y, across both. The point on both planes and the far one have
+  // none.
   REQUIRE(mirror.size() == 4);
   CHECK(mirror.begin() == 4);
   Field x(8, 2), T(8, 4), s(8, 3);

@@ -19,17 +19,23 @@ template <int D>
 void check_properties(double dx, double jitter) {
   CAPTURE(D);
   CAPTURE(jitter);
-  Method method{.operators = "compatible", .pair_precision = PairPrecision::double_precision, .compatible_iterations = 4000};
+  Method method{.operators = "compatible",
+                .pair_precision = PairPrecision::double_precision,
+                .compatible_iterations = 4000};
   const auto b = build<D>(dx, jitter, method);
   double linear = 0;
   bool conjugate = true;
   for (Index a = 0; a < b.particles.n; ++a) {
     Mat<D> sum = Mat<D>::Zero();
     b.pairs.for_each(a, [&](Index c, std::int64_t k, int lane) {
-      sum += (b.particles.X.template vec<D>(c) - b.particles.X.template vec<D>(a)) * vector_in<D>(b.op.vectors_d, k, lane).transpose();
-      // -G_ba as stored with a is, bit for bit, minus G_ba as stored with b: momentum is kept to the last bit.
+      sum += (b.particles.X.template vec<D>(c) - b.particles.X.template vec<D>(a)) *
+             vector_in<D>(b.op.vectors_d, k, lane).transpose();
+      // -G_ba as stored with a is, bit for bit, minus G_ba as stored with b: momentum is kept to the last
+      // bit.
       b.pairs.for_each(c, [&](Index back, std::int64_t kb, int lb) {
-        if (back == a) conjugate = conjugate && vector_in<D>(b.op.adjoint_d, k, lane) == -vector_in<D>(b.op.vectors_d, kb, lb);
+        if (back == a)
+          conjugate =
+              conjugate && vector_in<D>(b.op.adjoint_d, k, lane) == -vector_in<D>(b.op.vectors_d, kb, lb);
       });
     });
     linear = std::max(linear, (sum * b.op.M.template mat<D>(a).transpose() - Mat<D>::Identity()).norm());
@@ -70,14 +76,17 @@ TEST_CASE("compatible operators keep momentum and energy of a free vibration") {
   Simulation<2> body(make_cloud(box<2>({0, 0}, {1, 0.5}), {.dx = 0.1, .jitter = 0.15}),
                      make_material<2>("neo_hookean", {.E = 1e6, .nu = 0.3, .density = 1000}),
                      Method{.operators = "compatible", .pair_precision = PairPrecision::double_precision});
-  body.set_velocity([](const Vec<2>& X) -> Vec<2> { return {0.3 + 0.5 * std::sin(3 * X.y()), 0.4 * std::cos(4 * X.x())}; });
+  body.set_velocity([](const Vec<2>& X) -> Vec<2> {
+    return {0.3 + 0.5 * std::sin(3 * X.y()), 0.4 * std::cos(4 * X.x())};
+  });
   check_free_vibration(body);
 }
 
 TEST_CASE("compatible operators refuse areas that do not enclose the body") {
   Cloud<2> cloud = make_cloud(box<2>({0, 0}, {1, 1}), {.dx = 0.2});
   for (auto& B : cloud.B) B *= -1;  // inward
-  Simulation<2> body(std::move(cloud), make_material<2>("neo_hookean", {.E = 1e6, .nu = 0.3, .density = 1000}),
+  Simulation<2> body(std::move(cloud),
+                     make_material<2>("neo_hookean", {.E = 1e6, .nu = 0.3, .density = 1000}),
                      Method{.operators = "compatible"});
   CHECK_THROWS_WITH_AS(body.prepare(), doctest::Contains("do not enclose the body"), InputError);
 }
@@ -85,16 +94,19 @@ TEST_CASE("compatible operators refuse areas that do not enclose the body") {
 TEST_CASE("compatible operators say that they need areas next to symmetry planes") {
   Cloud<2> bare = make_cloud(box<2>({0, 0}, {1, 1}), {.dx = 0.2, .lattice = Lattice::cell_centred});
   bare.facets.clear();
-  Simulation<2> cells(bare, make_material<2>("neo_hookean", {.E = 1e6, .nu = 0.3, .density = 1000}), Method{.operators = "compatible"});
+  Simulation<2> cells(bare, make_material<2>("neo_hookean", {.E = 1e6, .nu = 0.3, .density = 1000}),
+                      Method{.operators = "compatible"});
   cells.symmetry_plane(0, 0);
   CHECK_THROWS_WITH_AS(cells.prepare(), doctest::Contains("boundary area"), InputError);
 }
 
 TEST_CASE("compatible operators of a lattice that is all but closed stay corrected ones, shared") {
-  const auto formulation_of = [](const char* operators, double support_dx, double jitter, PairPrecision precision) {
-    return std::make_unique<Bare<3>>(make_cloud(box<3>({0.1, 0.7, -0.3}, {1.1, 1.3, 0.7}), {.dx = 0.1, .jitter = jitter}),
-                                     make_material<3>("neo_hookean", {.E = 1e6, .nu = 0.3, .density = 1000}),
-                                     Method{.operators = operators, .support_dx = support_dx, .pair_precision = precision});
+  const auto formulation_of = [](const char* operators, double support_dx, double jitter,
+                                 PairPrecision precision) {
+    return std::make_unique<Bare<3>>(
+        make_cloud(box<3>({0.1, 0.7, -0.3}, {1.1, 1.3, 0.7}), {.dx = 0.1, .jitter = jitter}),
+        make_material<3>("neo_hookean", {.E = 1e6, .nu = 0.3, .density = 1000}),
+        Method{.operators = operators, .support_dx = support_dx, .pair_precision = precision});
   };
   const auto accelerations = [](Bare<3>& body) {
     for (Index i = 0; i < body.n(); ++i) {
@@ -123,6 +135,7 @@ TEST_CASE("compatible operators of a lattice that is all but closed stay correct
           formulation_of("corrected", support_dx, jitter, PairPrecision::automatic)->formulation->bytes());
     for (const auto precision : {PairPrecision::shared, PairPrecision::recomputed})
       CHECK_THROWS_WITH_AS(formulation_of("compatible", support_dx, jitter, precision),
-                           doctest::Contains("the pair vectors of compatible operators cannot be"), InputError);
+                           doctest::Contains("the pair vectors of compatible operators cannot be"),
+                           InputError);
   }
 }

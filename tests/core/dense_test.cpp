@@ -1,4 +1,5 @@
-// The dense-matrix algorithm of Kistner (2010, algorithm 5.2) against the engine with the `standard` operator.
+// The dense-matrix algorithm of Kistner (2010, algorithm 5.2) against the engine with the `standard`
+// operator.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -13,7 +14,8 @@ namespace {
 
 using Form = bench::DenseSteps<2>::Form;
 
-// Largest difference over the largest displacement, dense against engine, for a smooth bump of initial displacement.
+// Largest difference over the largest displacement, dense against engine, for a smooth bump of initial
+// displacement.
 double difference(bool held_rim, Form form) {
   constexpr double dx = 0.025, amplitude = 1e-2, support = 2.6;
   constexpr int steps = 60;
@@ -26,7 +28,8 @@ double difference(bool held_rim, Form form) {
   };
   const auto bump = [&](const Vec<2>& X) -> Vec<2> {
     const double width = held_rim ? 0.3 : 0.7, r2 = (X - Vec<2>(0.5, 0.4)).squaredNorm() / (width * width);
-    return r2 < 1 ? Vec<2>(amplitude * std::pow(1 - r2, 4), -0.5 * amplitude * std::pow(1 - r2, 4)) : Vec<2>(0, 0);
+    return r2 < 1 ? Vec<2>(amplitude * std::pow(1 - r2, 4), -0.5 * amplitude * std::pow(1 - r2, 4))
+                  : Vec<2>(0, 0);
   };
   Simulation<2> simulation(cloud, make_material<2>("neo_hookean", parameters),
                            {.formulation = "tl_displacement",
@@ -46,8 +49,8 @@ double difference(bool held_rim, Form form) {
     displacement.push_back(bump(X));
     at_rest.push_back(held(X));
   }
-  bench::DenseSteps<2> dense(cloud, kernel, support * cloud.dx / kernel.radius_factor(), parameters, displacement, form,
-                             at_rest);
+  bench::DenseSteps<2> dense(cloud, kernel, support * cloud.dx / kernel.radius_factor(), parameters,
+                             displacement, form, at_rest);
   for (int step = 0; step < steps; ++step) dense.step(dt);
   double largest = 0, error = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {

@@ -9,10 +9,10 @@
 #include <cmath>
 #include <memory>
 #include <random>
-#include <taut/formulations/formulation.hpp>
-#include <taut/operators/operators.hpp>
 #include <taut/formulations/assembly.hpp>
+#include <taut/formulations/formulation.hpp>
 #include <taut/neighbors/search.hpp>
+#include <taut/operators/operators.hpp>
 #include <taut/taut.hpp>
 #include <utility>
 #include <vector>

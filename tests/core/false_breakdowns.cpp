@@ -3,8 +3,8 @@
 
 #include <limits>
 #include <memory>
-#include <taut/formulations/formulation.hpp>
 #include <taut/formulations/assembly.hpp>
+#include <taut/formulations/formulation.hpp>
 #include <taut/taut.hpp>
 
 using namespace taut;

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <numeric>
 #include <string>
-#include <taut/formulations/auto_method.hpp>
 #include <taut/base/error.hpp>
-#include <taut/formulations/formulation.hpp>
 #include <taut/formulations/assembly.hpp>
+#include <taut/formulations/auto_method.hpp>
+#include <taut/formulations/formulation.hpp>
 #include <taut/operators/pair_payload.hpp>
 #include <vector>
 

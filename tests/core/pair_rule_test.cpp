@@ -1,10 +1,10 @@
 // Pairs with the body between them: slits, gaps, notches.
 #include <doctest/doctest.h>
 
-#include <taut/particles/interfaces.hpp>
 #include <taut/geometry/occupancy.hpp>
-#include <taut/particles/pair_rule.hpp>
 #include <taut/geometry/visibility.hpp>
+#include <taut/particles/interfaces.hpp>
+#include <taut/particles/pair_rule.hpp>
 
 #include "discretised.hpp"
 

@@ -117,18 +117,21 @@ TEST_CASE("simulation errors: bodies and materials that are none") {
     return cloud;
   };
   for (const double dx : {0.0, -1.0, not_a_number, infinity})
-    CHECK_REFUSED(Simulation<2>(damaged([&](auto& c) { c.dx = dx; }), material, with_defaults({})), "spacing", "positive");
-  CHECK_REFUSED(Simulation<2>(damaged([](auto& c) { c.V.pop_back(); }), material, with_defaults({})), "66 positions",
-                "65 volumes");
-  CHECK_REFUSED(Simulation<2>(damaged([](auto& c) { c.B.pop_back(); }), material, with_defaults({})), "66 positions",
-                "65 boundary area");
-  CHECK_REFUSED(Simulation<2>(damaged([](auto& c) { c.X[5][1] = not_a_number; }), material, with_defaults({})).prepare(),
+    CHECK_REFUSED(Simulation<2>(damaged([&](auto& c) { c.dx = dx; }), material, with_defaults({})), "spacing",
+                  "positive");
+  CHECK_REFUSED(Simulation<2>(damaged([](auto& c) { c.V.pop_back(); }), material, with_defaults({})),
+                "66 positions", "65 volumes");
+  CHECK_REFUSED(Simulation<2>(damaged([](auto& c) { c.B.pop_back(); }), material, with_defaults({})),
+                "66 positions", "65 boundary area");
+  CHECK_REFUSED(Simulation<2>(damaged([](auto& c) { c.X[5][1] = not_a_number; }), material, with_defaults({}))
+                    .prepare(),
                 "particle 5", "finite");
   for (const double V : {0.0, -1.0, not_a_number, infinity})
-    CHECK_REFUSED(Simulation<2>(damaged([&](auto& c) { c.V[7] = V; }), material, with_defaults({})).prepare(), "particle 7",
-                  "volume");
-  CHECK_REFUSED(Simulation<2>(damaged([](auto& c) { c.X[9] = c.X[8]; }), material, with_defaults({})).prepare(), "8", "9",
-                "coincide");
+    CHECK_REFUSED(Simulation<2>(damaged([&](auto& c) { c.V[7] = V; }), material, with_defaults({})).prepare(),
+                  "particle 7", "volume");
+  CHECK_REFUSED(
+      Simulation<2>(damaged([](auto& c) { c.X[9] = c.X[8]; }), material, with_defaults({})).prepare(), "8",
+      "9", "coincide");
 
   auto s = simulation();
   CHECK_REFUSED(s.set_material(everywhere(), none), "set_material", "no material");
@@ -238,8 +241,8 @@ TEST_CASE("simulation errors: particles whose neighbours do not span the space a
   lonely.X.emplace_back(3, 4);
   lonely.V.push_back(0.01);
   lonely.B.emplace_back(0, 0);
-  CHECK_REFUSED(Simulation<2>(lonely, material, with_defaults({})).prepare(), "particle 66 at (3, 4) is singular",
-                "0 neighbour(s)");
+  CHECK_REFUSED(Simulation<2>(lonely, material, with_defaults({})).prepare(),
+                "particle 66 at (3, 4) is singular", "0 neighbour(s)");
   Simulation<2>(lonely, material, {.operators = "standard"}).prepare();
 }
 

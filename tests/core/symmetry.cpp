@@ -1,6 +1,7 @@
 // A part of a body with symmetry planes moves as the same part of the whole body.
-#include <taut/formulations/auto_method.hpp>
 #include <doctest/doctest.h>
+
+#include <taut/formulations/auto_method.hpp>
 
 #include "discretised.hpp"
 

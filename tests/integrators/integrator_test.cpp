@@ -15,7 +15,13 @@ namespace {
 class Oscillators final : public Dynamics {
  public:
   Oscillators(std::vector<double> frequencies, double g)
-      : w_(std::move(frequencies)), g_(g), x_(w_.size(), 1.0), v_(w_.size()), a_(w_.size()), m_(w_.size(), 2.0), y_(x_),
+      : w_(std::move(frequencies)),
+        g_(g),
+        x_(w_.size(), 1.0),
+        v_(w_.size()),
+        a_(w_.size()),
+        m_(w_.size(), 2.0),
+        y_(x_),
         y_rate_(w_.size()) {}
   std::span<double> positions() override { return x_; }
   std::span<double> velocities() override { return v_; }
@@ -49,7 +55,8 @@ double error_after_one_period(const char* name, int steps) {
 TEST_CASE("integrators converge with second order, evolved variables with them") {
   for (const auto& name : integrator_names()) {
     CAPTURE(name);
-    const double coarse = error_after_one_period(name.c_str(), 50), fine = error_after_one_period(name.c_str(), 100);
+    const double coarse = error_after_one_period(name.c_str(), 50),
+                 fine = error_after_one_period(name.c_str(), 100);
     // x(T) itself is stationary in the phase error: its order is four.
     CHECK(coarse / fine > 3.8);
     CHECK(fine < 1e-3);
@@ -80,12 +87,14 @@ TEST_CASE("central differences and leapfrog walk the same path") {
     const double dt = i % 2 ? 0.05 : 0.07;  // changing steps too
     one->step(a, 0, dt);
     two->step(b, 0, dt);
-    for (std::size_t k = 0; k < 2; ++k) CHECK(a.positions()[k] == doctest::Approx(b.positions()[k]).epsilon(1e-12));
+    for (std::size_t k = 0; k < 2; ++k)
+      CHECK(a.positions()[k] == doctest::Approx(b.positions()[k]).epsilon(1e-12));
   }
 }
 
 TEST_CASE("unknown integrators are refused with the valid names") {
-  CHECK_THROWS_WITH_AS(make_integrator("euler"), doctest::Contains("leapfrog, central_difference"), InputError);
+  CHECK_THROWS_WITH_AS(make_integrator("euler"), doctest::Contains("leapfrog, central_difference"),
+                       InputError);
 }
 
 TEST_CASE("relaxation finds its damping and the equilibrium of stiff and soft modes") {

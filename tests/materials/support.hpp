@@ -76,7 +76,8 @@ struct Evaluation {
 };
 
 template <int D>
-std::shared_ptr<const Hyperelastic<D>> hyperelastic(std::string_view name, const MaterialParameters& parameters) {
+std::shared_ptr<const Hyperelastic<D>> hyperelastic(std::string_view name,
+                                                    const MaterialParameters& parameters) {
   return std::dynamic_pointer_cast<const Hyperelastic<D>>(make_material<D>(name, parameters));
 }
 

@@ -1,6 +1,6 @@
 #include <limits>
-
 #include <taut/neighbors/pair_list_builder.hpp>
+
 #include "clouds.hpp"
 
 using namespace clouds;

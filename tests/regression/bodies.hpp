@@ -1,5 +1,6 @@
 #pragma once
-// Bodies of the regression tests: the truss and the cantilever of Tran-Duc et al. (2023), sections 3.1 and 3.2.
+// Bodies of the regression tests: the truss and the cantilever of Tran-Duc et al. (2023), sections 3.1
+// and 3.2.
 
 #include <taut/taut.hpp>
 
@@ -34,8 +35,9 @@ inline Outcome solve(const Case& c) {
   // Cell-centred particles do not lie on the clamped face: three columns beyond it are held.
   const bool cells = c.lattice == Lattice::cell_centred;
   if (cells) lattice.layers[0] = {3, 0};
-  Simulation<2> simulation(make_cloud(box<2>({0, 0}, {L, H}), lattice),
-                           make_material<2>(c.material, {.E = E, .nu = c.nu, .density = 1000, .plane = c.plane}), c.method);
+  Simulation<2> simulation(
+      make_cloud(box<2>({0, 0}, {L, H}), lattice),
+      make_material<2>(c.material, {.E = E, .nu = c.nu, .density = 1000, .plane = c.plane}), c.method);
   if (cells)
     simulation.clamp([](const Vec<2>& X) { return X[0] < 0; });
   else

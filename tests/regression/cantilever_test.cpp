@@ -1,10 +1,10 @@
 // Cantilever under a transverse dead load (Tran-Duc et al. 2023, 3.1): truth by total Lagrangian Q2 finite
 // elements, 60 x 6, St. Venant-Kirchhoff, plane stress; tip displacement in mm
 // (bench/reference/cantilever.csv).
-#include <taut/formulations/auto_method.hpp>
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <taut/formulations/auto_method.hpp>
 #include <tuple>
 
 #include "bodies.hpp"

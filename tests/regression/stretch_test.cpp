@@ -119,8 +119,8 @@ TEST_CASE("stretch: nu = 0.49 follows the exact stress to where the material giv
     CHECK(drawn.status == Status::ok);
     CHECK(drawn.error < wanted);
   }
-  // dP/dF vanishes at 3.63. At 3.6 the bar is 1.5 % off since the state is the displacement (0.03 % before, and up to 3.58 now
-  // as then): it leaves the uniform state a little earlier.
+  // dP/dF vanishes at 3.63. At 3.6 the bar is 1.5 % off since the state is the displacement (0.03 % before,
+  // and up to 3.58 now as then): it leaves the uniform state a little earlier.
   const auto bar = draw<1>({.nu = 0.49, .stretch = 3.58});
   CHECK(bar.status == Status::ok);
   CHECK(bar.error < wanted);

@@ -8,8 +8,8 @@
 #include <scaling/lists.hpp>
 #include <scaling/traffic.hpp>
 #include <string>
-#include <taut/formulations/auto_method.hpp>
 #include <taut/base/error.hpp>
+#include <taut/formulations/auto_method.hpp>
 
 using namespace taut;
 using namespace taut::bench;

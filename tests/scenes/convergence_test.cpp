@@ -14,8 +14,8 @@
 #include <lib/results.hpp>
 #include <numbers>
 #include <program.hpp>
-#include <taut/formulations/auto_method.hpp>
 #include <taut/base/error.hpp>
+#include <taut/formulations/auto_method.hpp>
 
 using namespace taut;
 using namespace taut::bench;

@@ -5,9 +5,9 @@
 #include <numeric>
 #include <taut/base/error.hpp>
 #include <taut/formulations/assembly.hpp>
-#include <taut/particles/pair_rule.hpp>
-#include <taut/particles/interfaces.hpp>
 #include <taut/neighbors/search.hpp>
+#include <taut/particles/interfaces.hpp>
+#include <taut/particles/pair_rule.hpp>
 
 namespace taut {
 
@@ -44,8 +44,8 @@ void take_cells(const Cloud<D>& cloud, const std::vector<typename MirrorMap<D>::
                       "xyz"[plane.axis], cloud.origin[plane.axis] + plane.at));
 }
 
-// Puts a twin for each part in the place of every particle, material by material, each in the order that there
-// is: pairs never leave a material, so that its particles are best kept together.
+// Puts a twin for each part in the place of every particle, material by material, each in the order that
+// there is: pairs never leave a material, so that its particles are best kept together.
 template <int D>
 void split(const Interfaces<D>& interfaces, const std::vector<std::uint8_t>& material, Particles<D>& p,
            std::vector<const MaterialPart<D>*>& parts) {
@@ -89,7 +89,8 @@ void split(const Interfaces<D>& interfaces, const std::vector<std::uint8_t>& mat
 }  // namespace
 
 template <int D>
-std::vector<double> multiplicity(const Cloud<D>& cloud, const std::vector<typename MirrorMap<D>::Plane>& planes) {
+std::vector<double> multiplicity(const Cloud<D>& cloud,
+                                 const std::vector<typename MirrorMap<D>::Plane>& planes) {
   std::vector<double> times(cloud.size(), 1.0);
   for (std::size_t i = 0; i < cloud.size(); ++i)
     for (const auto& plane : planes)
@@ -99,8 +100,9 @@ std::vector<double> multiplicity(const Cloud<D>& cloud, const std::vector<typena
 
 template <int D>
 Particles<D> assemble(const Cloud<D>& cloud, std::vector<std::shared_ptr<const Material<D>>> materials,
-                      const std::vector<std::uint8_t>& material, const std::vector<typename MirrorMap<D>::Plane>& planes,
-                      double reach, const Interfaces<D>* interfaces, bool twins) {
+                      const std::vector<std::uint8_t>& material,
+                      const std::vector<typename MirrorMap<D>::Plane>& planes, double reach,
+                      const Interfaces<D>* interfaces, bool twins) {
   std::size_t n = cloud.size();
   if (n == 0) throw InputError("the body has no particles");
   for (const auto& plane : planes)
@@ -156,7 +158,8 @@ Particles<D> assemble(const Cloud<D>& cloud, std::vector<std::shared_ptr<const M
     const auto id = static_cast<std::size_t>(p.id[i]);
     const MaterialPart<D>* part = parts.empty() ? nullptr : parts[i];
     const double V = (part ? part->V : cloud.V[id]) * times[id];
-    if (!(V > 0) || !std::isfinite(V)) throw InputError(fmt::format("particle {} has volume {:g}; it must be positive", id, V));
+    if (!(V > 0) || !std::isfinite(V))
+      throw InputError(fmt::format("particle {} has volume {:g}; it must be positive", id, V));
     p.X.template set_vec<D>(i, ordered[i]);
     p.V.component(0)[i] = V;
     if (!cloud.spacing.empty()) p.spacing.component(0)[i] = cloud.spacing[id];
@@ -168,8 +171,9 @@ Particles<D> assemble(const Cloud<D>& cloud, std::vector<std::shared_ptr<const M
     else
       mass = V * p.materials[p.material[i]]->density();
     if (!std::isnormal(mass))
-      throw InputError(fmt::format("particle {} has mass {:g}: its volume {:g} times the density {:g} of \"{}\" is out of range",
-                                   id, mass, V, p.materials[p.material[i]]->density(), p.materials[p.material[i]]->name()));
+      throw InputError(fmt::format(
+          "particle {} has mass {:g}: its volume {:g} times the density {:g} of \"{}\" is out of range", id,
+          mass, V, p.materials[p.material[i]]->density(), p.materials[p.material[i]]->name()));
     p.m.component(0)[i] = mass;
     for (int d = 0; d < D; ++d) p.m_flat.component(d)[i] = p.m.component(0)[i];
     for (const auto& plane : planes)
@@ -182,7 +186,8 @@ Particles<D> assemble(const Cloud<D>& cloud, std::vector<std::shared_ptr<const M
       if (!planes.empty() && (p.planes[i] >> d & 1)) p.B[i][d] = 0;
   }
   if (!cloud.cells.empty()) take_cells(cloud, planes, p);
-  if (interfaces && interfaces->cells().size() == p.cells.size()) p.cell_material = interfaces->cell_material();
+  if (interfaces && interfaces->cells().size() == p.cells.size())
+    p.cell_material = interfaces->cell_material();
   p.mirror.positions(p.X);
   p.mirror.scalars(p.V);
   if (!p.spacing.empty()) p.mirror.scalars(p.spacing);
@@ -199,9 +204,11 @@ bool counts(const Particles<D>& p, Index a, Index b) {
   if (p.ties.empty()) return true;  // the search says it
   const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
   if ((p.X.template vec<D>(i) - p.X.template vec<D>(j)).norm() > 1e-12 * p.dx) return true;
-  const auto id = [&](Index k) { return p.id[static_cast<std::size_t>(k < p.n ? k : p.mirror.master(k - p.n))]; };
-  throw InputError(fmt::format("particles {} and {} coincide: remove one of them, or move overlapping bodies apart",
-                               id(a), id(b)));
+  const auto id = [&](Index k) {
+    return p.id[static_cast<std::size_t>(k < p.n ? k : p.mirror.master(k - p.n))];
+  };
+  throw InputError(fmt::format(
+      "particles {} and {} coincide: remove one of them, or move overlapping bodies apart", id(a), id(b)));
 }
 
 }  // namespace
@@ -222,12 +229,12 @@ PairList find_pairs_at_rest(const Particles<D>& p, const Method& method) {
   return pairs;
 }
 
-#define TAUT_INSTANTIATE(D)                                                                                           \
-  template std::vector<double> multiplicity<D>(const Cloud<D>&, const std::vector<typename MirrorMap<D>::Plane>&); \
-  template Particles<D> assemble<D>(const Cloud<D>&, std::vector<std::shared_ptr<const Material<D>>>,                 \
-                                    const std::vector<std::uint8_t>&,                                                 \
-                                    const std::vector<typename MirrorMap<D>::Plane>&, double,                         \
-                                    const Interfaces<D>*, bool);                                                      \
+#define TAUT_INSTANTIATE(D)                                                                               \
+  template std::vector<double> multiplicity<D>(const Cloud<D>&,                                           \
+                                               const std::vector<typename MirrorMap<D>::Plane>&);         \
+  template Particles<D> assemble<D>(                                                                      \
+      const Cloud<D>&, std::vector<std::shared_ptr<const Material<D>>>, const std::vector<std::uint8_t>&, \
+      const std::vector<typename MirrorMap<D>::Plane>&, double, const Interfaces<D>*, bool);              \
   template PairList find_pairs_at_rest<D>(const Particles<D>&, const Method&);
 TAUT_INSTANTIATE(1)
 TAUT_INSTANTIATE(2)

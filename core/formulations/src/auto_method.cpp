@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <taut/formulations/auto_method.hpp>
 #include <taut/base/error.hpp>
+#include <taut/formulations/auto_method.hpp>
 
 namespace taut {
 namespace {

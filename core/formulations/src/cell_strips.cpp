@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <taut/base/describe.hpp>
 #include <taut/base/error.hpp>
 #include <taut/formulations/cell_strips.hpp>
-#include <taut/base/describe.hpp>
 
 namespace taut {
 

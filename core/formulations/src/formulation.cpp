@@ -129,13 +129,14 @@ Mat<3> Formulation<D>::full_cauchy_stress(Index i) const {
 
 template <int D>
 Mat<D> Formulation<D>::deformation_gradient(Index) const {
-  throw InputError(fmt::format("{} has no deformation gradient: it keeps no reference configuration", method_.formulation));
+  throw InputError(fmt::format("{} has no deformation gradient: it keeps no reference configuration",
+                               method_.formulation));
 }
 
 template <int D>
 Mat<D> Formulation<D>::first_piola_kirchhoff(Index) const {
-  throw InputError(
-      fmt::format("{} has no first Piola-Kirchhoff stress: it keeps no reference configuration", method_.formulation));
+  throw InputError(fmt::format("{} has no first Piola-Kirchhoff stress: it keeps no reference configuration",
+                               method_.formulation));
 }
 
 template <int D>

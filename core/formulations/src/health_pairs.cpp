@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <taut/formulations/health_sweeps.hpp>
-#include <taut/particles/material_groups.hpp>
 #include <taut/operators/pair_passes.hpp>
+#include <taut/particles/material_groups.hpp>
 
 namespace taut {
 

@@ -58,8 +58,9 @@ class TlBondAssociated final : public TotalLagrangian<D> {
   double strain_energy() const override;
   double rough_limit() const override { return D == 1 ? told_only : 0.3; }
   MotionSample motion() const override {
-    // A bond to a stiff particle is stiff at both ends, so that next to an interface little strain is left to be
-    // seen: a sixth of the energy that the other forms have there for twice their error (bench/HEALTH.md, case 11).
+    // A bond to a stiff particle is stiff at both ends, so that next to an interface little strain is left to
+    // be seen: a sixth of the energy that the other forms have there for twice their error (bench/HEALTH.md,
+    // case 11).
     MotionSample sample = Base::motion();
     if (sample.interface > 0) sample.interface *= 6;
     return sample;
@@ -322,12 +323,15 @@ double TlBondAssociated<D>::stiffest_mode(const LawsAtRest& laws) {
     const IsotropicStiffness<double> opposite{-law.trace, -law.gradient, -law.transpose};
     opposite.template stress<D>(block);
   };
-  const double eigenvalue = largest_eigenvalue<D>(p_.n, p_.total, p_.m, p_.a, [&](Field& y) {
-    p_.tie(y);
-    if (!p_.mirror.empty()) p_.mirror.vectors(y);
-    accelerations(Columns<D>(y), stresses);
-    p_.tie(p_.a);
-  }, &this->stiffest_);
+  const double eigenvalue = largest_eigenvalue<D>(
+      p_.n, p_.total, p_.m, p_.a,
+      [&](Field& y) {
+        p_.tie(y);
+        if (!p_.mirror.empty()) p_.mirror.vectors(y);
+        accelerations(Columns<D>(y), stresses);
+        p_.tie(p_.a);
+      },
+      &this->stiffest_);
   std::fill(p_.a.flat().begin(), p_.a.flat().end(), 0.0);
   return eigenvalue;
 }

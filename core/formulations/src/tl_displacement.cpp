@@ -35,7 +35,8 @@ class TlDisplacement final : public TotalLagrangian<D> {
   void update_accelerations(double) override;
   double strain_energy() const override;
   double rough_limit() const override {
-    // In 1D odd and even particles move by themselves, a part of dx out of step behind an interface, to no harm.
+    // In 1D odd and even particles move by themselves, a part of dx out of step behind an interface, to no
+    // harm.
     if (D == 1) return told_only;
     return control_ ? 0.15 : taut::rough_limit(this->method_.operators);
   }

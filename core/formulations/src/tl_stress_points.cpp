@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <taut/base/describe.hpp>
+#include <taut/base/disjoint_sets.hpp>
 #include <taut/base/error.hpp>
 #include <taut/formulations/cell_kinematics.hpp>
 #include <taut/formulations/cell_strips.hpp>
-#include <taut/base/disjoint_sets.hpp>
-#include <taut/base/describe.hpp>
 #include <taut/formulations/formulations.hpp>
 #include <taut/formulations/hyperelastic_form.hpp>
 #include <taut/formulations/power_iteration.hpp>

@@ -15,7 +15,7 @@ struct ArtificialStressTerm {
 
   const Field& R;
   const KernelTable& table;
-  double scale;       // 1 / W(dx), or 1 / dx^2 where the weight is the distance
+  double scale;  // 1 / W(dx), or 1 / dx^2 where the weight is the distance
   bool by_distance;
   int exponent;
 
@@ -38,15 +38,18 @@ class UlArtificialStress final : public UpdatedLagrangian<D> {
   static constexpr int S = Base::S;
 
  public:
-  explicit UlArtificialStress(const FormulationSetup<D>& setup) : Base(setup), R_(static_cast<std::size_t>(p_.total), S) {
+  explicit UlArtificialStress(const FormulationSetup<D>& setup)
+      : Base(setup), R_(static_cast<std::size_t>(p_.total), S) {
     const Method& m = setup.method;
     if (!(m.artificial_stress >= 0))
       throw InputError(fmt::format("artificial_stress = {} must not be negative", m.artificial_stress));
     if (m.artificial_stress_weight != "kernel" && m.artificial_stress_weight != "distance")
-      throw InputError(fmt::format("unknown artificial_stress_weight \"{}\"; valid: kernel, distance", m.artificial_stress_weight));
+      throw InputError(fmt::format("unknown artificial_stress_weight \"{}\"; valid: kernel, distance",
+                                   m.artificial_stress_weight));
     exponent_ = static_cast<int>(m.artificial_stress_exponent);
     if (exponent_ != m.artificial_stress_exponent || exponent_ < 1 || exponent_ > 16)
-      throw InputError(fmt::format("artificial_stress_exponent = {} must be a whole number from 1 to 16", m.artificial_stress_exponent));
+      throw InputError(fmt::format("artificial_stress_exponent = {} must be a whole number from 1 to 16",
+                                   m.artificial_stress_exponent));
     by_distance_ = m.artificial_stress_weight == "distance";
     scale_ = by_distance_ ? 1 / (p_.dx * p_.dx) : 1 / this->kernel_.value(p_.dx, this->h_);
   }

@@ -6,9 +6,9 @@
 #include <limits>
 #include <numeric>
 #include <random>
+#include <taut/base/describe.hpp>
 #include <taut/base/error.hpp>
 #include <taut/geometry/body_mesh.hpp>
-#include <taut/base/describe.hpp>
 #include <taut/geometry/spacing.hpp>
 
 namespace taut {

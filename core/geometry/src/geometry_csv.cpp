@@ -9,10 +9,10 @@
 #include <map>
 #include <string>
 #include <taut/base/error.hpp>
+#include <taut/base/powers.hpp>
 #include <taut/geometry/geometry.hpp>
 #include <taut/geometry/local_origin.hpp>
 #include <taut/geometry/spacing.hpp>
-#include <taut/base/powers.hpp>
 
 namespace taut {
 namespace {

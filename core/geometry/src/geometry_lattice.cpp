@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <limits>
 #include <taut/base/error.hpp>
+#include <taut/base/powers.hpp>
 #include <taut/geometry/geometry.hpp>
 #include <taut/geometry/local_origin.hpp>
 #include <taut/geometry/occupancy.hpp>
-#include <taut/base/powers.hpp>
 #include <taut/geometry/shape_volume.hpp>
 
 namespace taut {
@@ -56,7 +56,7 @@ double edge_length(double min, double max, double dx) {
 template <int D>
 struct Grid {
   Place<D> cells{}, before{}, size{},
-      stride{};  // `size` with layers, without the empty rim; `stride` with it
+      stride{};              // `size` with layers, without the empty rim; `stride` with it
   Vec<D> min, max, spacing;  // relative to `origin`
   Vec<D> origin = Vec<D>::Zero();
   double cell_volume = 1;
@@ -264,8 +264,9 @@ void list_cells(const Grid<D>& grid, const std::vector<Fill>& fill, const Place<
   if (whole) cloud.cell_share = {};
 }
 
-// The faces at which the fill of cells changes, each owned by the fuller one's particle. Their moments are those of the
-// filled part of the cells: sum x_f (x) A_f = (sum V) I. `begin` counts the particles before each row of cells.
+// The faces at which the fill of cells changes, each owned by the fuller one's particle. Their moments are
+// those of the filled part of the cells: sum x_f (x) A_f = (sum V) I. `begin` counts the particles before
+// each row of cells.
 template <int D>
 void list_facets(const Grid<D>& grid, const std::vector<Fill>& fill, const std::vector<std::int64_t>& begin,
                  std::int64_t full, Cloud<D>& cloud) {
@@ -308,7 +309,8 @@ Occupancy<D> occupancy_of(const Grid<D>& grid, const std::vector<Fill>& fill, bo
     inner.insert(inner.end(), first, first + static_cast<std::ptrdiff_t>(grid.size[0]));
   }
   o.gapless = std::all_of(inner.begin(), inner.end(), [](Fill f) { return f > 0; });
-  if (std::any_of(inner.begin(), inner.end(), [&](Fill f) { return f != o.whole; })) o.fill = std::move(inner);
+  if (std::any_of(inner.begin(), inner.end(), [&](Fill f) { return f != o.whole; }))
+    o.fill = std::move(inner);
   return o;
 }
 

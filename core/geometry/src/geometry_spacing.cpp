@@ -1,6 +1,6 @@
 #include <algorithm>
-#include <taut/geometry/geometry.hpp>
 #include <taut/base/powers.hpp>
+#include <taut/geometry/geometry.hpp>
 #include <taut/geometry/spacing.hpp>
 
 namespace taut {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <taut/base/error.hpp>
-#include <taut/geometry/geometry.hpp>
 #include <taut/geometry/body_mesh.hpp>
+#include <taut/geometry/geometry.hpp>
 #include <taut/geometry/surface.hpp>
 
 namespace taut {

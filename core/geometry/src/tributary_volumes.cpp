@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
-#include <taut/base/error.hpp>
-#include <taut/geometry/geometry.hpp>
-#include <taut/geometry/body_mesh.hpp>
 #include <taut/base/describe.hpp>
+#include <taut/base/error.hpp>
+#include <taut/geometry/body_mesh.hpp>
+#include <taut/geometry/geometry.hpp>
 #include <taut/geometry/spacing.hpp>
 
 namespace taut {

@@ -2,13 +2,13 @@
 /// \file
 /// The one header for users.
 
-#include <taut/formulations/auto_method.hpp>
-#include <taut/output/derived.hpp>
 #include <taut/base/error.hpp>
-#include <taut/geometry/geometry.hpp>
+#include <taut/formulations/auto_method.hpp>
 #include <taut/formulations/health.hpp>
+#include <taut/geometry/geometry.hpp>
 #include <taut/kernels/kernel.hpp>
-#include <taut/operators/method.hpp>
-#include <taut/simulation/simulation.hpp>
-#include <taut/output/stress_recovery.hpp>
 #include <taut/materials/material.hpp>
+#include <taut/operators/method.hpp>
+#include <taut/output/derived.hpp>
+#include <taut/output/stress_recovery.hpp>
+#include <taut/simulation/simulation.hpp>

@@ -1,9 +1,9 @@
 #include <cmath>
+#include <taut/base/powers.hpp>
 #include <taut/operators/closure_system.hpp>
 #include <taut/operators/compatible_operator.hpp>
 #include <taut/operators/pair_passes.hpp>
 #include <taut/operators/pair_vectors.hpp>
-#include <taut/base/powers.hpp>
 
 namespace taut {
 

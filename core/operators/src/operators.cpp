@@ -4,14 +4,14 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <taut/base/describe.hpp>
 #include <taut/base/error.hpp>
-#include <taut/operators/operators.hpp>
+#include <taut/base/powers.hpp>
 #include <taut/operators/antisymmetric_operator.hpp>
 #include <taut/operators/block_dictionary.hpp>
 #include <taut/operators/compatible_operator.hpp>
-#include <taut/base/describe.hpp>
+#include <taut/operators/operators.hpp>
 #include <taut/operators/pair_passes.hpp>
-#include <taut/base/powers.hpp>
 #include <taut/operators/quadratic_operator.hpp>
 #include <taut/operators/shared_vectors.hpp>
 
@@ -243,8 +243,9 @@ PairOperator<D> make_operator(const Method& method, const Particles<D>& p, const
   if (name == "quadratic") {
     require_stored(method, op.precision);
     if (!p.spacing.empty())
-      throw InputError("quadratic operators have one support for all particles, which this cloud is too graded for: use "
-                       "compatible operators");
+      throw InputError(
+          "quadratic operators have one support for all particles, which this cloud is too graded for: use "
+          "compatible operators");
     make_quadratic(p, pairs, kernel, h, op);
   } else {
     fill_radial_vectors(p, pairs, kernel, h, op);

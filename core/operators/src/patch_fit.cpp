@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <taut/base/describe.hpp>
 #include <taut/base/error.hpp>
 #include <taut/base/fields.hpp>
-#include <taut/operators/patch_fit.hpp>
-#include <taut/base/describe.hpp>
 #include <taut/neighbors/search.hpp>
+#include <taut/operators/patch_fit.hpp>
 
 namespace taut {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <taut/base/error.hpp>
 #include <taut/base/describe.hpp>
+#include <taut/base/error.hpp>
 #include <taut/operators/pair_vectors.hpp>
 #include <taut/operators/quadratic_operator.hpp>
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <taut/base/error.hpp>
+#include <taut/base/powers.hpp>
 #include <taut/operators/block_dictionary.hpp>
 #include <taut/operators/pair_payload.hpp>
-#include <taut/base/powers.hpp>
 #include <taut/operators/shared_vectors.hpp>
 #include <unordered_map>
 #include <unordered_set>

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numeric>
 #include <taut/base/error.hpp>
+#include <taut/neighbors/search.hpp>
 #include <taut/output/stress_recovery.hpp>
 #include <taut/particles/pair_rule.hpp>
 #include <taut/simulation/simulation_impl.hpp>
-#include <taut/neighbors/search.hpp>
 
 namespace taut {
 
@@ -61,8 +61,8 @@ Patches<D> find_patches(const SimulationImpl<D>& s) {
       linked[static_cast<std::size_t>(i)] = true;
     }
   if (!cells) {
-    PairList pairs = find_pairs<D>(points_of<D>(p.X, p.n), s.method.support_dx * p.dx,
-                                   {.coincident = !p.ties.empty()});
+    PairList pairs =
+        find_pairs<D>(points_of<D>(p.X, p.n), s.method.support_dx * p.dx, {.coincident = !p.ties.empty()});
     if (p.rule) filter_pairs(pairs, [&](Index a, Index b) { return p.rule->counts(a, b); });
     for (Index i = 0; i < p.n; ++i)
       pairs.for_each(i, [&](Index b, std::int64_t, int) {
@@ -110,8 +110,7 @@ std::vector<Mat<D>> StressRecovery<D>::recover(F&& of_sample) const {
   const std::vector<Mat<D>> fitted = fit_(samples);
   const std::vector<Index>& place = simulation_->particles.place;
   std::vector<Mat<D>> ordered(place.size());
-  for (std::size_t id = 0; id < place.size(); ++id)
-    ordered[id] = fitted[static_cast<std::size_t>(place[id])];
+  for (std::size_t id = 0; id < place.size(); ++id) ordered[id] = fitted[static_cast<std::size_t>(place[id])];
   return ordered;
 }
 

@@ -1,9 +1,9 @@
-#include <taut/output/derived.hpp>
 #include <taut/base/error.hpp>
-#include <taut/simulation/simulation.hpp>
+#include <taut/output/derived.hpp>
 #include <taut/output/output_file.hpp>
-#include <taut/simulation/simulation_impl.hpp>
 #include <taut/output/vtkhdf.hpp>
+#include <taut/simulation/simulation.hpp>
+#include <taut/simulation/simulation_impl.hpp>
 
 #ifdef TAUT_HAS_HDF5
 #include <hdf5.h>

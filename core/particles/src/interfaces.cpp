@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
-#include <taut/particles/interfaces.hpp>
 #include <taut/geometry/occupancy.hpp>
+#include <taut/particles/interfaces.hpp>
 
 namespace taut {
 

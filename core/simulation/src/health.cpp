@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <taut/base/error.hpp>
 #include <taut/base/describe.hpp>
+#include <taut/base/error.hpp>
 #include <taut/formulations/health_sweeps.hpp>
 #include <taut/simulation/health_watch.hpp>
 #include <taut/simulation/simulation_impl.hpp>

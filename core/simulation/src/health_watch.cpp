@@ -1,7 +1,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <taut/formulations/health_sweeps.hpp>
 #include <taut/base/error.hpp>
 #include <taut/formulations/health_sweeps.hpp>
 #include <taut/simulation/simulation_impl.hpp>

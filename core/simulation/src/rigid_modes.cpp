@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 #include <string>
-#include <taut/base/error.hpp>
 #include <taut/base/describe.hpp>
+#include <taut/base/error.hpp>
 #include <taut/simulation/rigid_modes.hpp>
 
 namespace taut {

@@ -4,19 +4,19 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <taut/formulations/auto_method.hpp>
 #include <taut/base/error.hpp>
-#include <taut/kernels/kernel.hpp>
-#include <taut/operators/operators.hpp>
-#include <taut/integrators/integrator.hpp>
-#include <taut/formulations/assembly.hpp>
-#include <taut/geometry/local_origin.hpp>
-#include <taut/formulations/formulations.hpp>
-#include <taut/particles/pair_rule.hpp>
 #include <taut/base/powers.hpp>
+#include <taut/formulations/assembly.hpp>
+#include <taut/formulations/auto_method.hpp>
+#include <taut/formulations/formulations.hpp>
+#include <taut/geometry/local_origin.hpp>
+#include <taut/integrators/integrator.hpp>
+#include <taut/kernels/kernel.hpp>
+#include <taut/neighbors/search.hpp>
+#include <taut/operators/operators.hpp>
+#include <taut/particles/pair_rule.hpp>
 #include <taut/simulation/rigid_modes.hpp>
 #include <taut/simulation/simulation_impl.hpp>
-#include <taut/neighbors/search.hpp>
 
 namespace taut {
 
@@ -62,7 +62,8 @@ auto SimulationImpl<D>::select(const Where<D>& where, const char* what) const ->
   if (!chosen.empty())
     for (const Index i : selected.particles) chosen[static_cast<std::size_t>(i)] = 1;
   for (std::size_t f = 0; f < cloud.facets.size(); ++f)
-    if (!chosen[static_cast<std::size_t>(cloud.facets[f].owner)] && where(cloud.origin + cloud.facets[f].centre))
+    if (!chosen[static_cast<std::size_t>(cloud.facets[f].owner)] &&
+        where(cloud.origin + cloud.facets[f].centre))
       selected.facets.push_back(static_cast<Index>(f));
   if (selected.particles.empty() && selected.facets.empty())
     throw InputError(fmt::format("{} selects no particle", what));
@@ -107,7 +108,8 @@ Simulation<D>::Simulation(Cloud<D> cloud, std::shared_ptr<const Material<D>> mat
   if (cloud.V.size() != cloud.size())
     throw InputError(fmt::format("the cloud has {} positions but {} volumes", cloud.size(), cloud.V.size()));
   if (!cloud.spacing.empty() && cloud.spacing.size() != cloud.size())
-    throw InputError(fmt::format("the cloud has {} positions but {} spacings", cloud.size(), cloud.spacing.size()));
+    throw InputError(
+        fmt::format("the cloud has {} positions but {} spacings", cloud.size(), cloud.spacing.size()));
   for (const double spacing : cloud.spacing)
     if (!(spacing > 0) || !std::isfinite(spacing))
       throw InputError(fmt::format("the cloud's spacings must be positive; one is {:g}", spacing));
@@ -124,7 +126,8 @@ Simulation<D>::Simulation(Cloud<D> cloud, std::shared_ptr<const Material<D>> mat
                                  cloud.cell_share.size()));
   for (const Facet<D>& facet : cloud.facets)
     if (facet.owner < 0 || static_cast<std::size_t>(facet.owner) >= cloud.size())
-      throw InputError(fmt::format("the owner {} of a facet is none of the {} particles", facet.owner, cloud.size()));
+      throw InputError(
+          fmt::format("the owner {} of a facet is none of the {} particles", facet.owner, cloud.size()));
   // What the method has no use for.
   if (!needs_areas(method.operators)) cloud.facets = {};
   if (materials_meet(method.formulation) != MaterialsMeet::in_cells) {
@@ -280,7 +283,8 @@ void SimulationImpl<D>::add_load(const Selected& selected, const Vec<D>& force, 
   const std::vector<Index>& ids = selected.particles;
   std::vector<double> weight;
   if (!cloud.B.empty())
-    weight = facing_weights<D>(ids.size(), [&](std::size_t k) { return cloud.B[static_cast<std::size_t>(ids[k])]; });
+    weight = facing_weights<D>(ids.size(),
+                               [&](std::size_t k) { return cloud.B[static_cast<std::size_t>(ids[k])]; });
   if (weight.empty()) weight.assign(ids.size(), 1.0 / static_cast<double>(ids.size()));
   // A particle on a symmetry plane carries its image's load as well.
   const auto times = multiplicity<D>(cloud, planes);
@@ -326,8 +330,8 @@ void Simulation<D>::observe(double interval, std::function<void(double)> f) {
 
 namespace {
 
-// Closed boundaries, for operators that need them: found where nothing is known of them, made of area vectors where these
-// are all there is. Areas that have to be bent too far are an error.
+// Closed boundaries, for operators that need them: found where nothing is known of them, made of area vectors
+// where these are all there is. Areas that have to be bent too far are an error.
 template <int D>
 void enclose(Cloud<D>& cloud) {
   if (cloud.facets.empty()) {
@@ -338,10 +342,10 @@ void enclose(Cloud<D>& cloud) {
   constexpr double tolerable = 0.2;
   const double change = close_areas(cloud);
   if (!(change < tolerable))
-    throw InputError(
-        fmt::format("the boundary area vectors do not enclose the body: closing them (sum B = 0, sum X (x) B = "
-                    "volume) would change them by {:.0f} %. Check their signs and the volumes, or leave them out",
-                    100 * change));
+    throw InputError(fmt::format(
+        "the boundary area vectors do not enclose the body: closing them (sum B = 0, sum X (x) B = "
+        "volume) would change them by {:.0f} %. Check their signs and the volumes, or leave them out",
+        100 * change));
 }
 
 // The body goes on across a symmetry plane: what ends there is no boundary.
@@ -369,9 +373,10 @@ template <int D>
 void check_wave_speed(const Material<D>& material) {
   const double speed = material.wave_speed();
   if (!(speed > 0) || !std::isfinite(speed))
-    throw InputError(fmt::format("material \"{}\" has the wave speed {:g} m/s, which must be positive and finite: "
-                                 "check its modulus and its density of {:g}",
-                                 material.name(), speed, material.density()));
+    throw InputError(
+        fmt::format("material \"{}\" has the wave speed {:g} m/s, which must be positive and finite: "
+                    "check its modulus and its density of {:g}",
+                    material.name(), speed, material.density()));
 }
 }  // namespace
 
@@ -386,16 +391,16 @@ void Simulation<D>::prepare() {
   if (interfaces) interfaces->straighten(s.cloud);
   if (needs_areas(s.method.operators) && s.planes.empty()) enclose(s.cloud);
   open_facets_on<D>(s.planes, s.cloud);
-  const double widest =
-      s.cloud.spacing.empty() ? s.cloud.dx : *std::max_element(s.cloud.spacing.begin(), s.cloud.spacing.end());
+  const double widest = s.cloud.spacing.empty()
+                            ? s.cloud.dx
+                            : *std::max_element(s.cloud.spacing.begin(), s.cloud.spacing.end());
   const double reach = s.method.support_dx * widest * (1 + s.method.skin);
   for (const auto& material : s.materials) check_wave_speed(*material);
   const bool twins = interfaces && meet == MaterialsMeet::in_twins;
   s.particles = assemble<D>(s.cloud, s.materials, s.material, s.planes, reach, interfaces, twins);
   // Areas that are guesses tell nothing. Forms that find their neighbours anew let bodies meet.
   if (meet != MaterialsMeet::in_particles && (areas_known || s.cloud.body))
-    s.particles.rule =
-        PairRule<D>::make(s.cloud, s.particles, s.planes, twins ? interfaces : nullptr, reach);
+    s.particles.rule = PairRule<D>::make(s.cloud, s.particles, s.planes, twins ? interfaces : nullptr, reach);
   if (!s.cloud.facets.empty()) s.place_facets();
   s.cloud.cells = {};  // the particles have them now
   s.cloud.cell_share = {};
@@ -414,11 +419,11 @@ void Simulation<D>::prepare() {
   auto formulation = make_formulation<D>({s.particles, s.constraints, s.loads, s.method});
   const double step = formulation->stable_step();
   if (!(step > 0) || !std::isfinite(step))
-    throw InputError(
-        fmt::format("the stable step of the body at rest is {:g} s: the highest frequency of its particles has no "
-                    "number. Check the material, spacing and volumes (and their units), zero_energy_control, and "
-                    "whether particles have neighbours at all",
-                    step));
+    throw InputError(fmt::format(
+        "the stable step of the body at rest is {:g} s: the highest frequency of its particles has no "
+        "number. Check the material, spacing and volumes (and their units), zero_energy_control, and "
+        "whether particles have neighbours at all",
+        step));
   s.health = s.health_of_setup = setup_health<D>(s, *formulation);
   s.formulation = std::move(formulation);
   // A form on cells has taken them over.
@@ -443,9 +448,10 @@ void Simulation<D>::check_run(double duration, const RunOptions& options) {
   const double bound = options.cfl * impl_->formulation->stable_step();
   const double step = options.max_step > 0 ? std::min(bound, options.max_step) : bound;
   if (duration > 0 && !advances(end, step))
-    throw InputError(fmt::format("run: steps of {:g} s never reach {:g} s, which has a resolution of {:g} s. Shorten "
-                                 "the duration, or enlarge max_step or cfl",
-                                 step, end, end - std::nextafter(end, 0)));
+    throw InputError(
+        fmt::format("run: steps of {:g} s never reach {:g} s, which has a resolution of {:g} s. Shorten "
+                    "the duration, or enlarge max_step or cfl",
+                    step, end, end - std::nextafter(end, 0)));
 }
 
 template <int D>

@@ -2,8 +2,8 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <taut/integrators/relax.hpp>
 #include <taut/base/powers.hpp>
+#include <taut/integrators/relax.hpp>
 #include <taut/simulation/simulation_impl.hpp>
 
 namespace taut {
@@ -116,7 +116,8 @@ void notify(SimulationImpl<D>& s) {
 template <int D>
 bool has_numbers(const Particles<D>& p) {
   for (std::size_t i = 0; i < static_cast<std::size_t>(p.n); ++i)
-    if (!std::isfinite(p.u.template vec<D>(i).squaredNorm() + p.v.template vec<D>(i).squaredNorm())) return false;
+    if (!std::isfinite(p.u.template vec<D>(i).squaredNorm() + p.v.template vec<D>(i).squaredNorm()))
+      return false;
   return true;
 }
 
@@ -128,8 +129,8 @@ bool is_left_alone(const SimulationImpl<D>& s, const std::vector<double>& times)
   return !s.constraints.move_later(s.time, times, s.particles.X);
 }
 
-// Out-of-balance force [N] that rounding of the state (displacements, or positions where stresses follow from rates) can make: rounded strains, times the modulus,
-// on the faces of a cell, for all particles.
+// Out-of-balance force [N] that rounding of the state (displacements, or positions where stresses follow from
+// rates) can make: rounded strains, times the modulus, on the faces of a cell, for all particles.
 template <int D>
 double force_of_round_off(const SimulationImpl<D>& s) {
   double modulus = 0, farthest = 0;
@@ -138,7 +139,8 @@ double force_of_round_off(const SimulationImpl<D>& s) {
   const bool rates = !s.formulation->evolved().empty();
   for (int d = 0; d < D; ++d)
     for (Index i = 0; i < s.particles.n; ++i)
-      farthest = std::max(farthest, std::abs(s.particles.u.component(d)[i] + (rates ? s.particles.X.component(d)[i] : 0)));
+      farthest = std::max(
+          farthest, std::abs(s.particles.u.component(d)[i] + (rates ? s.particles.X.component(d)[i] : 0)));
   constexpr double roundings = 8;
   return roundings * std::numeric_limits<double>::epsilon() * std::sqrt(static_cast<double>(s.particles.n)) *
          modulus * farthest * int_power(s.particles.dx, D - 2);
@@ -181,7 +183,8 @@ RunResult integrate(SimulationImpl<D>& s, Integrator& integrator, double duratio
     if (options.max_step > 0) bound = std::min(bound, options.max_step);
     double dt = s.step_control.next(bound);
     if (!advances(end, dt)) {
-      loop.give_up(std::isfinite(dt) && has_numbers(s.particles) ? "step too small to advance time" : "not a number");
+      loop.give_up(std::isfinite(dt) && has_numbers(s.particles) ? "step too small to advance time"
+                                                                 : "not a number");
       break;
     }
     // No sliver of a step that rounding has left.
@@ -243,11 +246,10 @@ RunResult find_equilibrium(SimulationImpl<D>& s, const RelaxOptions& options) {
     result.remaining_motion = relaxation.remaining_motion();
     // Nothing has moved yet, but will.
     const bool waits = scale == 0 && !left_alone;
-    const bool small =
-        !waits && s.time - start >= options.ramp_time &&
-        ((left_alone && relaxation.force_norm() <= round_off) ||
-         (result.residual <= options.tolerance &&
-          (result.remaining_motion <= RelaxOptions::still_moving || result.residual == 0)));
+    const bool small = !waits && s.time - start >= options.ramp_time &&
+                       ((left_alone && relaxation.force_norm() <= round_off) ||
+                        (result.residual <= options.tolerance &&
+                         (result.remaining_motion <= RelaxOptions::still_moving || result.residual == 0)));
     converged = small ? converged + 1 : 0;
     if (converged == in_a_row) {
       result.status = Status::ok;
@@ -257,9 +259,9 @@ RunResult find_equilibrium(SimulationImpl<D>& s, const RelaxOptions& options) {
   return loop.finish(true);
 }
 
-#define TAUT_INSTANTIATE(D)                                                                    \
+#define TAUT_INSTANTIATE(D)                                                                        \
   template std::vector<double> relaxation_times<D>(const SimulationImpl<D>&, const RelaxOptions&); \
-  template RunResult integrate<D>(SimulationImpl<D>&, Integrator&, double, const RunOptions&); \
+  template RunResult integrate<D>(SimulationImpl<D>&, Integrator&, double, const RunOptions&);     \
   template RunResult find_equilibrium<D>(SimulationImpl<D>&, const RelaxOptions&);
 TAUT_INSTANTIATE(1)
 TAUT_INSTANTIATE(2)

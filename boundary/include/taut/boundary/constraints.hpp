@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <functional>
 #include <span>
-#include <taut/boundary/held_points.hpp>
 #include <taut/base/fields.hpp>
 #include <taut/base/types.hpp>
+#include <taut/boundary/held_points.hpp>
 #include <vector>
 
 namespace taut {
@@ -27,16 +27,20 @@ class Constraints {
 
   /// The same for points that particles carry with them.
   void hold(std::vector<BoundPoint<D>> points, int axis, Displacement displacement = {});
-  /// To be called when all is held, with the masses of the particles. \throws InputError as `HeldPoints::factor`.
+  /// To be called when all is held, with the masses of the particles. \throws InputError as
+  /// `HeldPoints::factor`.
   void finish(const Field& mass);
 
   void apply_to_displacements(double t, const Field& X, Field& u) const;
   /// Velocities of prescribed components are the central difference of their displacement over
   /// t ± `window` [s], which should be a small part of a time step: histories have no scale of their own.
   void apply_to_velocities(double t, const Field& X, Field& v, double window) const;
-  /// Constrained components carry no acceleration of their own, so that norms of it are out-of-balance forces.
+  /// Constrained components carry no acceleration of their own, so that norms of it are out-of-balance
+  /// forces.
   void apply_to_accelerations(Field& a) const;
-  bool empty() const { return sets_.empty() && std::all_of(held_.begin(), held_.end(), [](const auto& h) { return h.empty(); }); }
+  bool empty() const {
+    return sets_.empty() && std::all_of(held_.begin(), held_.end(), [](const auto& h) { return h.empty(); });
+  }
 
   /// Bit d is set where component d of a particle is held or prescribed, for the first n particles.
   std::vector<std::uint8_t> held(Index n) const;
@@ -46,7 +50,8 @@ class Constraints {
   template <class F>
   void for_each_point(F&& f) const {
     for (int d = 0; d < D; ++d)
-      held_[static_cast<std::size_t>(d)].for_each([&](const BoundPoint<D>& point, const Displacement&) { f(point, d); });
+      held_[static_cast<std::size_t>(d)].for_each(
+          [&](const BoundPoint<D>& point, const Displacement&) { f(point, d); });
   }
   /// Whether any displacement is prescribed: constraints that are fixed do no work.
   bool moving() const {

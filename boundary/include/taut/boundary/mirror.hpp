@@ -8,8 +8,8 @@
 
 namespace taut {
 
-/// Images of particles beyond symmetry planes X[axis] = const. Image k stands at index `begin() + k` of every field and copies
-/// the particle `master(k)`, reflected.
+/// Images of particles beyond symmetry planes X[axis] = const. Image k stands at index `begin() + k` of every
+/// field and copies the particle `master(k)`, reflected.
 template <int D>
 class MirrorMap {
  public:
@@ -20,9 +20,10 @@ class MirrorMap {
   };
 
   MirrorMap() = default;
-  /// Images of all points within `reach` of the planes (edges and corners of several planes included), the points on a
-  /// plane excepted: they are their own images. `tolerance` tells what lies on a plane.
-  MirrorMap(const std::vector<Plane>& planes, const std::vector<Vec<D>>& points, double reach, double tolerance);
+  /// Images of all points within `reach` of the planes (edges and corners of several planes included), the
+  /// points on a plane excepted: they are their own images. `tolerance` tells what lies on a plane.
+  MirrorMap(const std::vector<Plane>& planes, const std::vector<Vec<D>>& points, double reach,
+            double tolerance);
 
   bool empty() const { return master_.empty(); }
   Index size() const { return static_cast<Index>(master_.size()); }
@@ -46,8 +47,8 @@ class MirrorMap {
  private:
   Index begin_ = 0;
   std::vector<Index> master_;
-  std::vector<std::uint8_t> flips_;      // bit d: coordinate d is reflected
-  std::vector<Vec<D>> twice_plane_;      // x' = twice_plane + S x
+  std::vector<std::uint8_t> flips_;  // bit d: coordinate d is reflected
+  std::vector<Vec<D>> twice_plane_;  // x' = twice_plane + S x
 };
 
 }  // namespace taut

@@ -11,7 +11,8 @@ namespace taut {
 
 /// Central differences with viscous damping that finds its own coefficient: 2 omega, where omega^2 is the
 /// Rayleigh quotient of the latest step, -(dx . M da) / (dx . M dx) (Underwood 1983; Papadrakakis 1981). High
-/// frequencies die first, the quotient falls to the lowest one that still moves, which is then near-critically damped.
+/// frequencies die first, the quotient falls to the lowest one that still moves, which is then
+/// near-critically damped.
 class Relaxation {
  public:
   explicit Relaxation(Dynamics& system);
@@ -22,7 +23,8 @@ class Relaxation {
   double force_norm() const { return force_norm_; }
   /// Kinetic energy of the last half step [J].
   double kinetic_energy() const { return kinetic_energy_; }
-  /// How far the motion of the lowest moving mode still has to go, over how far it has come: |v| / (omega |x - x0|).
+  /// How far the motion of the lowest moving mode still has to go, over how far it has come: |v| / (omega |x
+  /// - x0|).
   double remaining_motion() const { return remaining_; }
   double damping() const { return damping_; }
 

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Loops over flat arrays that every integrator needs. Sums are made in fixed blocks, so that they have the same
-/// bits for any number of threads.
+/// Loops over flat arrays that every integrator needs. Sums are made in fixed blocks, so that they have the
+/// same bits for any number of threads.
 
 #include <span>
 
@@ -10,7 +10,8 @@ namespace taut {
 /// y += factor * x
 void add_scaled(std::span<double> y, double factor, std::span<const double> x);
 /// v += kick * a, then x += drift * v, in one pass over memory.
-void kick_drift(std::span<double> x, std::span<double> v, std::span<const double> a, double kick, double drift);
+void kick_drift(std::span<double> x, std::span<double> v, std::span<const double> a, double kick,
+                double drift);
 /// sum of x * y
 double dot(std::span<const double> x, std::span<const double> y);
 /// sum of weight * x * y

@@ -33,7 +33,8 @@ SearchMethod search_method(std::string_view name);
 
 struct SearchOptions {
   SearchMethod method = SearchMethod::cell_list;
-  /// Points that coincide are pairs like others, for who will part them (`filter_pairs`), instead of an error.
+  /// Points that coincide are pairs like others, for who will part them (`filter_pairs`), instead of an
+  /// error.
   bool coincident = false;
 };
 

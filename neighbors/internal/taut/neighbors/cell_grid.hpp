@@ -4,10 +4,9 @@
 #include <cstdint>
 #include <span>
 #include <taut/base/fields.hpp>
-#include <vector>
-
 #include <taut/neighbors/clusters.hpp>
 #include <taut/neighbors/simd.hpp>
+#include <vector>
 
 namespace taut::detail::inline TAUT_SIMD_NAMESPACE {
 

@@ -1,11 +1,10 @@
 #pragma once
 // The search by cells: slices near a group from grids of clusters.
 
-#include <vector>
-
 #include <taut/neighbors/cell_grid.hpp>
 #include <taut/neighbors/slice_group.hpp>
 #include <taut/neighbors/slice_set.hpp>
+#include <vector>
 
 namespace taut::detail::inline TAUT_SIMD_NAMESPACE {
 

@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <span>
 #include <taut/base/fields.hpp>
-#include <vector>
-
 #include <taut/neighbors/slice.hpp>
+#include <vector>
 
 namespace taut::detail {
 

@@ -3,9 +3,8 @@
 
 #include <cstdint>
 #include <taut/base/types.hpp>
-#include <vector>
-
 #include <taut/neighbors/buffer.hpp>
+#include <vector>
 
 namespace taut::detail {
 

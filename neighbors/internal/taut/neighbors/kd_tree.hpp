@@ -2,10 +2,9 @@
 // The search through nanoflann's k-d tree: slower than cells, indifferent to how points are spread.
 
 #include <memory>
-#include <vector>
-
 #include <taut/neighbors/slice_group.hpp>
 #include <taut/neighbors/slice_set.hpp>
+#include <vector>
 
 namespace taut::detail::inline TAUT_SIMD_NAMESPACE {
 

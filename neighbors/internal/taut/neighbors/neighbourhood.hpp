@@ -2,10 +2,9 @@
 // What is near a group of slices, copied to where each slice of the group finds it in cache.
 
 #include <taut/base/fields.hpp>
-#include <vector>
-
 #include <taut/neighbors/simd.hpp>
 #include <taut/neighbors/slice_group.hpp>
+#include <vector>
 
 namespace taut::detail::inline TAUT_SIMD_NAMESPACE {
 

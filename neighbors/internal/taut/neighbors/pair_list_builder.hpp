@@ -1,9 +1,8 @@
 #pragma once
 #include <mutex>
+#include <taut/neighbors/encoded_slices.hpp>
 #include <taut/neighbors/pair_list.hpp>
 #include <vector>
-
-#include <taut/neighbors/encoded_slices.hpp>
 
 namespace taut {
 

@@ -1,9 +1,8 @@
 #pragma once
 // Which particles of the slices near a group pair with those of one of its slices.
 
-#include <vector>
-
 #include <taut/neighbors/neighbourhood.hpp>
+#include <vector>
 
 namespace taut::detail::inline TAUT_SIMD_NAMESPACE {
 

@@ -2,9 +2,8 @@
 // The searches by cells that this processor can run.
 
 #include <taut/neighbors/search.hpp>
-#include <vector>
-
 #include <taut/neighbors/slice.hpp>
+#include <vector>
 
 namespace taut::detail {
 

@@ -3,10 +3,9 @@
 
 #include <cstdint>
 #include <taut/base/types.hpp>
-#include <vector>
-
 #include <taut/neighbors/encoded_slices.hpp>
 #include <taut/neighbors/simd.hpp>
+#include <vector>
 
 namespace taut::detail::inline TAUT_SIMD_NAMESPACE {
 

@@ -5,14 +5,13 @@
 #include <atomic>
 #include <bit>
 #include <limits>
-#include <utility>
-
 #include <taut/neighbors/neighbourhood.hpp>
 #include <taut/neighbors/pair_list_builder.hpp>
 #include <taut/neighbors/pair_test.hpp>
 #include <taut/neighbors/parallel.hpp>
 #include <taut/neighbors/point_check.hpp>
 #include <taut/neighbors/slice_encoder.hpp>
+#include <utility>
 
 namespace taut::detail::inline TAUT_SIMD_NAMESPACE {
 

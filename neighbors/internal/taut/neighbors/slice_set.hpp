@@ -7,10 +7,9 @@
 #include <cstring>
 #include <limits>
 #include <taut/base/types.hpp>
+#include <taut/neighbors/lanes.hpp>
 #include <utility>
 #include <vector>
-
-#include <taut/neighbors/lanes.hpp>
 
 namespace taut::detail::inline TAUT_SIMD_NAMESPACE {
 

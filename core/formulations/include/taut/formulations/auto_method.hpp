@@ -5,8 +5,8 @@
 #include <set>
 #include <string>
 #include <taut/geometry/geometry.hpp>
-#include <taut/operators/method.hpp>
 #include <taut/materials/material.hpp>
+#include <taut/operators/method.hpp>
 #include <vector>
 
 namespace taut {

@@ -12,9 +12,9 @@
 #include <taut/boundary/constraints.hpp>
 #include <taut/boundary/loads.hpp>
 #include <taut/formulations/health.hpp>
+#include <taut/integrators/dynamics.hpp>
 #include <taut/operators/method.hpp>
 #include <taut/particles/particles.hpp>
-#include <taut/integrators/dynamics.hpp>
 #include <vector>
 
 namespace taut {

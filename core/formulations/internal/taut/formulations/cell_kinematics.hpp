@@ -2,10 +2,10 @@
 /// \file
 /// Deformation of eight cells, and the forces of their stresses on the corners.
 
+#include <taut/base/simd.hpp>
 #include <taut/formulations/cell_modes.hpp>
 #include <taut/formulations/cell_strips.hpp>
 #include <taut/operators/pair_payload.hpp>
-#include <taut/base/simd.hpp>
 
 namespace taut {
 

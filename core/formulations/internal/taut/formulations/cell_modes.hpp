@@ -8,8 +8,8 @@
 /// polynomial of the modes of its corners, and its derivatives are few.
 
 #include <array>
-#include <taut/base/types.hpp>
 #include <taut/base/simd.hpp>
+#include <taut/base/types.hpp>
 
 namespace taut {
 

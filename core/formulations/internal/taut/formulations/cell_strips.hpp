@@ -6,8 +6,8 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <taut/particles/particles.hpp>
 #include <taut/base/types.hpp>
+#include <taut/particles/particles.hpp>
 #include <vector>
 
 namespace taut {

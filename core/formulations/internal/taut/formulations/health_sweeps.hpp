@@ -6,10 +6,10 @@
 #include <limits>
 #include <string>
 #include <taut/formulations/health.hpp>
-#include <taut/operators/operators.hpp>
-#include <taut/particles/particles.hpp>
 #include <taut/kernels/kernel_table.hpp>
 #include <taut/neighbors/pair_list.hpp>
+#include <taut/operators/operators.hpp>
+#include <taut/particles/particles.hpp>
 #include <vector>
 
 namespace taut {

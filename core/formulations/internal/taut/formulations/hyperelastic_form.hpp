@@ -72,7 +72,7 @@ class HyperelasticForm : public Formulation<D> {
 
   std::vector<const Hyperelastic<D>*> materials_;
   StretchBounds stretch_;
-  double frequency_ = 0;  ///< of the stiffest mode of the body at rest [rad/s], or a bound
+  double frequency_ = 0;          ///< of the stiffest mode of the body at rest [rad/s], or a bound
   Index stiffest_ = no_particle;  ///< particle that moves most in it
 };
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstdint>
 #include <taut/base/fields.hpp>
-#include <taut/particles/material_groups.hpp>
 #include <taut/base/simd.hpp>
+#include <taut/particles/material_groups.hpp>
 #include <vector>
 
 namespace taut {
@@ -69,7 +69,8 @@ double largest_eigenvalue(Index n, Index total, const Field& m, Field& a, Apply&
     }
     if (sums.yy > 0 && sums.ya > 0) eigenvalue = std::max(sums.ya / sums.yy, std::sqrt(sums.aa / sums.yy));
     // Only to keep numbers within range; a power of two rounds nothing, in no system of units.
-    const double scale = sums.aa > 0 && std::isfinite(sums.aa) ? std::ldexp(1.0, -(std::ilogb(sums.aa) / 2)) : 0;
+    const double scale =
+        sums.aa > 0 && std::isfinite(sums.aa) ? std::ldexp(1.0, -(std::ilogb(sums.aa) / 2)) : 0;
     for (int d = 0; d < D; ++d) {
       double* to = y.component(d);
       const double* from = a.component(d);

@@ -4,15 +4,15 @@
 
 #include <Eigen/LU>
 #include <array>
-#include <taut/operators/operators.hpp>
-#include <taut/formulations/assembly.hpp>
 #include <taut/base/disjoint_sets.hpp>
+#include <taut/formulations/assembly.hpp>
 #include <taut/formulations/health_sweeps.hpp>
 #include <taut/formulations/hyperelastic_form.hpp>
-#include <taut/particles/material_groups.hpp>
-#include <taut/operators/pair_passes.hpp>
-#include <taut/particles/pair_rule.hpp>
 #include <taut/neighbors/search.hpp>
+#include <taut/operators/operators.hpp>
+#include <taut/operators/pair_passes.hpp>
+#include <taut/particles/material_groups.hpp>
+#include <taut/particles/pair_rule.hpp>
 
 namespace taut {
 

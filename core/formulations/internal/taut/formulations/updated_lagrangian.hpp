@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// What the updated Lagrangian forms share: density and stress by rates, and the pair loops on current positions.
+/// What the updated Lagrangian forms share: density and stress by rates, and the pair loops on current
+/// positions.
 
 #include <fmt/format.h>
 
@@ -8,16 +9,16 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <taut/base/error.hpp>
-#include <taut/formulations/formulation.hpp>
-#include <taut/kernels/kernel.hpp>
 #include <taut/base/disjoint_sets.hpp>
-#include <taut/formulations/health_sweeps.hpp>
-#include <taut/kernels/kernel_table.hpp>
-#include <taut/particles/material_groups.hpp>
+#include <taut/base/error.hpp>
 #include <taut/base/simd.hpp>
+#include <taut/formulations/formulation.hpp>
+#include <taut/formulations/health_sweeps.hpp>
+#include <taut/kernels/kernel.hpp>
+#include <taut/kernels/kernel_table.hpp>
 #include <taut/neighbors/search.hpp>
 #include <taut/neighbors/verlet_list.hpp>
+#include <taut/particles/material_groups.hpp>
 
 namespace taut {
 
@@ -32,8 +33,8 @@ constexpr std::array<int, 2> sym_axes(int c) {
 /// Updated Lagrangian SPH for hypoelastic materials (Gray, Monaghan & Swift 2001; methods 5.1):
 ///   L_a = 1/rho_a sum_b m_b (v_b - v_a) (x) grad W_ab,   drho_a/dt = -rho_a tr L_a,   ds/dt by the material,
 ///   dv_a/dt = sum_b m_b (T_a + T_b + pair terms) grad W_ab,   T = sigma / rho^2.
-/// L is the adjoint of the force, so what work the forces do is the stress power. In plane stress rho is the mass per
-/// area of the plane, the material has a density of its own, and T = sigma / (rho rho_material).
+/// L is the adjoint of the force, so what work the forces do is the stress power. In plane stress rho is the
+/// mass per area of the plane, the material has a density of its own, and T = sigma / (rho rho_material).
 template <int D>
 class UpdatedLagrangian : public Formulation<D> {
  protected:
@@ -46,7 +47,9 @@ class UpdatedLagrangian : public Formulation<D> {
   explicit UpdatedLagrangian(const FormulationSetup<D>& setup);
 
   std::vector<Evolved> evolved() override {
-    return {{rho_.flat(), rho_rate_.flat()}, {rho_material_.flat(), rho_material_rate_.flat()}, {s_.flat(), s_rate_.flat()}};
+    return {{rho_.flat(), rho_rate_.flat()},
+            {rho_material_.flat(), rho_material_rate_.flat()},
+            {s_.flat(), s_rate_.flat()}};
   }
   void update_rates(double t) override;
   void inspect() override;
@@ -92,12 +95,13 @@ class UpdatedLagrangian : public Formulation<D> {
   PointView<D> points() const { return points_of<D>(x_, p_.total); }
   /// x = X + u of all particles, mirror images included.
   void update_positions();
-  /// Brings the pair list up to date; false, with `failure` set, where the particles are in no state to have one.
+  /// Brings the pair list up to date; false, with `failure` set, where the particles are in no state to have
+  /// one.
   bool update_list();
   /// T = sigma / rho^2 of all particles, mirror images included.
   void update_stress();
-  /// dv/dt. `term.add(i, r2, at, T)` adds to the symmetric components T = T_a + T_b of the pairs of particles i ... i + 7
-  /// with the neighbours that `at` loads, r2 their squared distances.
+  /// dv/dt. `term.add(i, r2, at, T)` adds to the symmetric components T = T_a + T_b of the pairs of particles
+  /// i ... i + 7 with the neighbours that `at` loads, r2 their squared distances.
   template <class Term>
   void acceleration_pass(const Term& term);
   /// Calls f(at) for each slot of slice s; at(p) are the values of a component p at the slot's neighbours.
@@ -140,20 +144,24 @@ UpdatedLagrangian<D>::UpdatedLagrangian(const FormulationSetup<D>& setup)
   for (const auto& material : p_.materials) {
     const auto* hypoelastic = dynamic_cast<const Hypoelastic<D>*>(material.get());
     if (!hypoelastic)
-      throw InputError(fmt::format("{} needs a material that gives stress rates; \"{}\" gives stresses of a deformation gradient. Valid: "
-                                   "hypoelastic",
-                                   setup.method.formulation, material->name()));
+      throw InputError(
+          fmt::format("{} needs a material that gives stress rates; \"{}\" gives stresses of a deformation "
+                      "gradient. Valid: "
+                      "hypoelastic",
+                      setup.method.formulation, material->name()));
     materials_.push_back(hypoelastic);
   }
   if (setup.method.velocity_gradient != "standard" && setup.method.velocity_gradient != "corrected")
-    throw InputError(fmt::format("unknown velocity_gradient \"{}\"; valid: standard, corrected", setup.method.velocity_gradient));
+    throw InputError(fmt::format("unknown velocity_gradient \"{}\"; valid: standard, corrected",
+                                 setup.method.velocity_gradient));
   const auto n = static_cast<std::size_t>(p_.total);
   rho_ = rho_rate_ = rho_material_ = rho_material_rate_ = Field(n, 1);
   s_ = s_rate_ = T_ = Field(n, S);
   std::fill(rho_.flat().begin(), rho_.flat().end(), 1.0);
   std::fill(rho_material_.flat().begin(), rho_material_.flat().end(), 1.0);
   for (Index i = 0; i < p_.n; ++i)
-    rho_.component(0)[i] = rho_material_.component(0)[i] = p_.materials[p_.material[static_cast<std::size_t>(i)]]->density();
+    rho_.component(0)[i] = rho_material_.component(0)[i] =
+        p_.materials[p_.material[static_cast<std::size_t>(i)]]->density();
   x_ = Field(n, D);
   update_positions();
   list_.update(points());
@@ -161,7 +169,8 @@ UpdatedLagrangian<D>::UpdatedLagrangian(const FormulationSetup<D>& setup)
   const double touching = 1.2 * p_.dx;
   for (Index a = 0; a < p_.n; ++a)
     list_.pairs().for_each(a, [&](Index b, std::int64_t, int) {
-      if (b > a && b < p_.n && (p_.X.template vec<D>(a) - p_.X.template vec<D>(b)).norm() < touching) nearest_.push_back({a, b});
+      if (b > a && b < p_.n && (p_.X.template vec<D>(a) - p_.X.template vec<D>(b)).norm() < touching)
+        nearest_.push_back({a, b});
     });
 }
 
@@ -351,7 +360,8 @@ void UpdatedLagrangian<D>::update_stress() {
     p_.mirror.scalars(rho_material_);
   }
   if (broken < p_.n && !this->failure_)
-    this->failure_ = Failure{std::isfinite(rho_.component(0)[broken]) ? "density <= 0" : "not a number", broken};
+    this->failure_ =
+        Failure{std::isfinite(rho_.component(0)[broken]) ? "density <= 0" : "not a number", broken};
 }
 
 template <int D>

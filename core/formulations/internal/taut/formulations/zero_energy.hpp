@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <taut/kernels/kernel.hpp>
-#include <taut/particles/particles.hpp>
-#include <taut/operators/pair_payload.hpp>
 #include <taut/neighbors/pair_list.hpp>
+#include <taut/operators/pair_payload.hpp>
+#include <taut/particles/particles.hpp>
 
 namespace taut {
 

@@ -69,25 +69,26 @@ struct Cloud {
   /// (sum V) I. Empty where area vectors on the particles say it all, or nothing is known.
   std::vector<Facet<D>> facets;
   std::vector<char>
-      extra;      ///< 1 for particles of added layers (`LatticeOptions::layers`); empty when there are none
+      extra;  ///< 1 for particles of added layers (`LatticeOptions::layers`); empty when there are none
   /// Cells between particles, for formulations that keep stress on cells: their corners, bit d of a corner's
   /// number telling whether it is the upper one along axis d. Empty for other clouds than node-centred
   /// lattices, and where they are not wanted (`LatticeOptions::cells`).
   std::vector<std::array<Index, 1 << D>> cells;
   std::vector<double> cell_share;  ///< part of each cell that is body, 0 … 1; empty where all are whole
-  double dx = 0;  ///< nominal spacing [m]
-  std::vector<double> spacing;  ///< of each particle [m], for supports that grow with it; empty where all have dx
+  double dx = 0;                   ///< nominal spacing [m]
+  std::vector<double>
+      spacing;  ///< of each particle [m], for supports that grow with it; empty where all have dx
   /// What X and the centres of facets are relative to [m]. Coordinates far from their origin (maps) have too
   /// few digits left for spacings and displacements, so that bodies there get one of their own.
   Vec<D> origin = Vec<D>::Zero();
   /// The lattice that `make_cloud` filled, which tells total Lagrangian forms what lies between particles and
   /// where materials meet. Without it the boundary does, where areas are given: particles within the support
-  /// are no neighbours if the way from one to the other leaves the body (n . X > 0.85 |X| with n the direction
-  /// of its area vector, or 0.4 |X| at both). Without either all within the support are.
-  /// Null for other clouds. Holds while particles are moved, but not where they are added, removed or
-  /// reordered: such a cloud counts as one without a lattice.
+  /// are no neighbours if the way from one to the other leaves the body (n . X > 0.85 |X| with n the
+  /// direction of its area vector, or 0.4 |X| at both). Without either all within the support are. Null for
+  /// other clouds. Holds while particles are moved, but not where they are added, removed or reordered: such
+  /// a cloud counts as one without a lattice.
   std::shared_ptr<const Occupancy<D>> body;
-  double body_volume = 0;  ///< that of the shape, added layers left out [m^D]; 0 where unknown
+  double body_volume = 0;        ///< that of the shape, added layers left out [m^D]; 0 where unknown
   bool guessed_volumes = false;  ///< V follows from the points alone
   std::size_t size() const { return X.size(); }
 };
@@ -111,15 +112,17 @@ struct LatticeOptions {
   /// points (1 … 16 along each axis) that are inside: volumes of round bodies come closer to the true ones,
   /// at the price of particles of small volume on the surface. The sums below hold all the same.
   int samples = 1;
-  bool cells = true;  ///< node-centred lattices list their cells as well, for stress points: 2^D corners of four bytes each
+  bool cells = true;  ///< node-centred lattices list their cells as well, for stress points: 2^D corners of
+                      ///< four bytes each
 };
 
 /// Fills a shape with a square lattice aligned with its bounding box, in lexicographic order, x fastest.
-/// Cell-centred lattices have facets where filled cells end. Node-centred volumes and area vectors are those of
-/// the union of inside cells, so that sum B = 0 and sum X (x) B = (sum V) I hold to round-off. Jitter moves a point only when all cells around it are inside
-/// (all cells around its own, for cell-centred ones), so that neither the faces nor the sums change; the
-/// displacements depend on the seed and the place in the lattice alone, and are the same on every machine.
-/// `Cloud::dx` is the wanted spacing where it divides the box, else the D-th root of a cell's volume.
+/// Cell-centred lattices have facets where filled cells end. Node-centred volumes and area vectors are those
+/// of the union of inside cells, so that sum B = 0 and sum X (x) B = (sum V) I hold to round-off. Jitter
+/// moves a point only when all cells around it are inside (all cells around its own, for cell-centred ones),
+/// so that neither the faces nor the sums change; the displacements depend on the seed and the place in the
+/// lattice alone, and are the same on every machine. `Cloud::dx` is the wanted spacing where it divides the
+/// box, else the D-th root of a cell's volume.
 ///
 /// A box more than ten of its extents from the origin gets a `Cloud::origin` in its lower corner. Its edges
 /// are then as long as they were before its coordinates were rounded, as far as can be told: the multiple of
@@ -135,8 +138,8 @@ Cloud<D> make_cloud(const Shape<D>& shape, const LatticeOptions& options);
 /// face, listing the valid ones, or an empty cloud.
 template <int D>
 std::function<bool(const Vec<D>&)> on_face(const Cloud<D>& cloud, std::string_view face);
-/// The same for the bounding box of the cloud's facets, within dx/1000: half a cell outside of the outermost particles of
-/// cell-centred clouds. \throws InputError also for a cloud without facets.
+/// The same for the bounding box of the cloud's facets, within dx/1000: half a cell outside of the outermost
+/// particles of cell-centred clouds. \throws InputError also for a cloud without facets.
 template <int D>
 std::function<bool(const Vec<D>&)> on_facets(const Cloud<D>& cloud, std::string_view face);
 
@@ -145,47 +148,47 @@ std::function<bool(const Vec<D>&)> on_facets(const Cloud<D>& cloud, std::string_
 /// - volume: without it volumes are found as `find_volumes` does, and the body ends at its outermost points.
 /// - bx[,by[,bz]]: the particle's area vector, `Cloud::B`.
 /// - fx[,fy[,fz]], beside volume and bx: where that area has its centre, `Cloud::facets`; rows with zero area
-///   have none. A particle with several facets has a row for each: the same position to the last digit, and an
-///   empty volume after the first.
+///   have none. A particle with several facets has a row for each: the same position to the last digit, and
+///   an empty volume after the first.
 ///
 /// `dx` defaults, when 0, to the larger one of the median distance to the nearest particle and of V^(1/D) in
 /// the middle of the volume (half of the body's volume lies in particles that are larger): the spacing of
 /// lattices, node or cell-centred, and of jittered ones that know their volumes. \throws InputError as
-/// file:line: what, for a missing file or column, a field that is no finite number, a wrong number of fields, a
-/// line of more than a million bytes, a volume that is not positive; also for volumes, coordinates or a dx that
-/// overflow, a dx that is negative or cannot be found, and as `find_volumes`. Clouds far from the
-/// origin get one of their own, as those of `make_cloud`.
+/// file:line: what, for a missing file or column, a field that is no finite number, a wrong number of fields,
+/// a line of more than a million bytes, a volume that is not positive; also for volumes, coordinates or a dx
+/// that overflow, a dx that is negative or cannot be found, and as `find_volumes`. Clouds far from the origin
+/// get one of their own, as those of `make_cloud`.
 template <int D>
 Cloud<D> read_cloud(const std::filesystem::path& file, double dx = 0);
 
-/// Gives the particles of a graded cloud spacings of their own: D-th roots of the volumes around, or the distance of the
-/// D-th neighbour where that is more. Leaves `spacing` empty where they differ by less than a factor of 1.6, as in jittered
-/// clouds.
+/// Gives the particles of a graded cloud spacings of their own: D-th roots of the volumes around, or the
+/// distance of the D-th neighbour where that is more. Leaves `spacing` empty where they differ by less than a
+/// factor of 1.6, as in jittered clouds.
 template <int D>
 void grade_spacing(Cloud<D>& cloud);
 
 /// Gives particles the volumes of the body between them, which ends at the outermost: Delaunay's simplices
-/// (those that are not wide: gaps and holes of less than about three spacings are filled, and re-entrant corners
-/// cut off by half a spacing), each shared among its corners. Regular lattices get dx^D inside, and halves,
-/// quarters, eighths on faces, edges, corners; volumes sum to the body's to round-off. \throws InputError when
-/// a particle lies on no part of the body or shares its place with another, and in 2D and 3D when taut was built
-/// without Qhull.
+/// (those that are not wide: gaps and holes of less than about three spacings are filled, and re-entrant
+/// corners cut off by half a spacing), each shared among its corners. Regular lattices get dx^D inside, and
+/// halves, quarters, eighths on faces, edges, corners; volumes sum to the body's to round-off. \throws
+/// InputError when a particle lies on no part of the body or shares its place with another, and in 2D and 3D
+/// when taut was built without Qhull.
 template <int D>
 void find_volumes(Cloud<D>& cloud);
 
 /// Finds the boundary of a body of which the particles and their volumes are known, and puts it into
-/// `Cloud::facets`. Between the particles the body is that of `find_volumes`; where the volumes of a connected
-/// part sum to more, its surface is moved outwards, to half a cell before the outermost particles if these are
-/// cells' middles, so that it encloses what they sum to; where such particles are jittered the surface is
-/// smoothed, and edges are kept. sum A = 0 and sum x (x) A = (sum V) I to round-off. \throws InputError as
-/// `find_volumes`, and when the volumes do not belong to a body like that.
+/// `Cloud::facets`. Between the particles the body is that of `find_volumes`; where the volumes of a
+/// connected part sum to more, its surface is moved outwards, to half a cell before the outermost particles
+/// if these are cells' middles, so that it encloses what they sum to; where such particles are jittered the
+/// surface is smoothed, and edges are kept. sum A = 0 and sum x (x) A = (sum V) I to round-off. \throws
+/// InputError as `find_volumes`, and when the volumes do not belong to a body like that.
 template <int D>
 void enclose_cloud(Cloud<D>& cloud);
 
-/// Makes facets of area vectors that are known without the places where they act: at the particle, or as far out
-/// of it as the body's volume asks for, half a cell where particles are cells' middles. Areas of particles on
-/// edges and in corners are split as the neighbours' directions suggest. What is enclosed has the trace of
-/// (sum V) I; `close_areas` does the rest. \throws InputError when all areas are zero.
+/// Makes facets of area vectors that are known without the places where they act: at the particle, or as far
+/// out of it as the body's volume asks for, half a cell where particles are cells' middles. Areas of
+/// particles on edges and in corners are split as the neighbours' directions suggest. What is enclosed has
+/// the trace of (sum V) I; `close_areas` does the rest. \throws InputError when all areas are zero.
 template <int D>
 void place_areas(Cloud<D>& cloud);
 

@@ -2,8 +2,8 @@
 /// \file
 /// Bodies far from the origin of their coordinates.
 
-#include <taut/geometry/geometry.hpp>
 #include <taut/base/types.hpp>
+#include <taut/geometry/geometry.hpp>
 
 namespace taut {
 

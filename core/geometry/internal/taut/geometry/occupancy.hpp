@@ -4,8 +4,8 @@
 
 #include <array>
 #include <cstdint>
-#include <taut/geometry/geometry.hpp>
 #include <taut/base/types.hpp>
+#include <taut/geometry/geometry.hpp>
 #include <vector>
 
 namespace taut {

@@ -2,8 +2,8 @@
 // Closed surfaces of line segments or triangles around a body.
 
 #include <array>
-#include <taut/geometry/geometry.hpp>
 #include <taut/geometry/body_mesh.hpp>
+#include <taut/geometry/geometry.hpp>
 #include <vector>
 
 namespace taut {

@@ -4,8 +4,8 @@
 /// distances change.
 
 #include <taut/base/fields.hpp>
-#include <taut/kernels/kernel.hpp>
 #include <taut/base/simd.hpp>
+#include <taut/kernels/kernel.hpp>
 
 namespace taut {
 

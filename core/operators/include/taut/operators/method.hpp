@@ -11,8 +11,8 @@ namespace taut {
 /// Formulation, operators and their parameters. Names are those of the registries; each error lists the valid
 /// ones.
 struct Method {
-  /// "auto": chosen for the body, by the rules of auto_method.hpp: stress points where the cloud has cells. A method that
-  /// gives operators, a kernel or another key of pairs is `tl_displacement`.
+  /// "auto": chosen for the body, by the rules of auto_method.hpp: stress points where the cloud has cells. A
+  /// method that gives operators, a kernel or another key of pairs is `tl_displacement`.
   std::string formulation = "auto";
   std::string operators{};  ///< empty: chosen with the formulation; `corrected` where that is given
   std::string kernel{};     ///< likewise; `wendland_c2`
@@ -24,11 +24,12 @@ struct Method {
   /// Conjugate-gradient iterations of the set-up of `compatible` and `antisymmetric` operators.
   int compatible_iterations = 20;
 
-  /// Control of zero-energy modes in the total Lagrangian forms, 0 = absent. `tl_displacement`: coefficient alpha of
-  /// a pairwise energy, absent unless given,
+  /// Control of zero-energy modes in the total Lagrangian forms, 0 = absent. `tl_displacement`: coefficient
+  /// alpha of a pairwise energy, absent unless given,
   ///   1/4 sum_a sum_b k_ab |x_ab - F_a X_ab|^2,   k_ab = alpha E V_a V_b W_ab / |X_ab|^2,
-  /// with the stiffness of Ganzenmueller (2015). `tl_stress_points`: stiffness of the hourglass modes over the
-  /// one that bends a square cell, or a cube, as a beam does; 1 unless given. Linear motions have none of either.
+  /// with the stiffness of Ganzenmueller (2015). `tl_stress_points`: stiffness of the hourglass modes over
+  /// the one that bends a square cell, or a cube, as a beam does; 1 unless given. Linear motions have none of
+  /// either.
   std::optional<double> zero_energy_control{};
 
   /// Updated Lagrangian forms: Monaghan viscosity alpha (0 = absent), skin of the pair list over R, whether

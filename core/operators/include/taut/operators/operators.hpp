@@ -6,9 +6,9 @@
 #include <string>
 #include <taut/base/fields.hpp>
 #include <taut/kernels/kernel.hpp>
+#include <taut/neighbors/pair_list.hpp>
 #include <taut/operators/method.hpp>
 #include <taut/particles/particles.hpp>
-#include <taut/neighbors/pair_list.hpp>
 #include <vector>
 
 namespace taut {

@@ -8,11 +8,11 @@
 #include <algorithm>
 #include <cmath>
 #include <taut/base/error.hpp>
-#include <taut/operators/operators.hpp>
-#include <taut/particles/particles.hpp>
-#include <taut/integrators/vector_ops.hpp>
-#include <taut/operators/pair_payload.hpp>
 #include <taut/base/powers.hpp>
+#include <taut/integrators/vector_ops.hpp>
+#include <taut/operators/operators.hpp>
+#include <taut/operators/pair_payload.hpp>
+#include <taut/particles/particles.hpp>
 #include <utility>
 
 namespace taut {

@@ -4,8 +4,8 @@
 
 #include <span>
 #include <taut/geometry/geometry.hpp>
-#include <taut/particles/particles.hpp>
 #include <taut/neighbors/pair_list.hpp>
+#include <taut/particles/particles.hpp>
 #include <vector>
 
 namespace taut {

@@ -3,10 +3,10 @@
 /// The two pair loops of the total Lagrangian forms, eight particles at a time.
 
 #include <taut/base/fields.hpp>
-#include <taut/base/types.hpp>
-#include <taut/operators/pair_payload.hpp>
 #include <taut/base/simd.hpp>
+#include <taut/base/types.hpp>
 #include <taut/neighbors/pair_list.hpp>
+#include <taut/operators/pair_payload.hpp>
 
 namespace taut {
 

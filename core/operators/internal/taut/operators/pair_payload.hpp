@@ -3,11 +3,11 @@
 /// Where pair loops take their neighbours, pair vectors and particle matrices from.
 
 #include <taut/base/fields.hpp>
-#include <taut/operators/operators.hpp>
+#include <taut/base/simd.hpp>
 #include <taut/base/types.hpp>
 #include <taut/kernels/kernel_table.hpp>
-#include <taut/base/simd.hpp>
 #include <taut/neighbors/pair_list.hpp>
+#include <taut/operators/operators.hpp>
 #include <utility>
 
 namespace taut {

@@ -2,9 +2,9 @@
 /// \file
 /// Storing pair vectors that are not antisymmetric.
 
+#include <taut/neighbors/pair_list.hpp>
 #include <taut/operators/operators.hpp>
 #include <taut/particles/particles.hpp>
-#include <taut/neighbors/pair_list.hpp>
 #include <utility>
 
 namespace taut {

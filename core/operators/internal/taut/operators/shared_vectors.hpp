@@ -3,9 +3,9 @@
 /// Pair vectors kept once for all slots that are alike.
 
 #include <taut/kernels/kernel.hpp>
+#include <taut/neighbors/pair_list.hpp>
 #include <taut/operators/operators.hpp>
 #include <taut/particles/particles.hpp>
-#include <taut/neighbors/pair_list.hpp>
 
 namespace taut {
 

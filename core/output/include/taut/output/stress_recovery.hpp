@@ -17,8 +17,8 @@ namespace taut {
 ///
 /// Fits see neither other bodies (those that the formulation does not couple) nor other materials; a particle
 /// on the border of two has the stress of its own one. Nor do they look across slits and re-entrant corners,
-/// where the formulation's pairs do not. Nothing is added to a time step: fits are made once, in the reference
-/// configuration.
+/// where the formulation's pairs do not. Nothing is added to a time step: fits are made once, in the
+/// reference configuration.
 template <int D>
 class StressRecovery {
  public:

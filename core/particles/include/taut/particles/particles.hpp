@@ -6,10 +6,10 @@
 #include <array>
 #include <bit>
 #include <memory>
-#include <taut/boundary/mirror.hpp>
 #include <taut/base/fields.hpp>
-#include <taut/geometry/geometry.hpp>
 #include <taut/base/types.hpp>
+#include <taut/boundary/mirror.hpp>
+#include <taut/geometry/geometry.hpp>
 #include <taut/materials/material.hpp>
 #include <vector>
 
@@ -37,9 +37,9 @@ struct Particles {
   Vec<D> origin = Vec<D>::Zero();  ///< of the coordinates X, see `Cloud::origin` [m]
   Field X, u, v, a;                ///< reference position, displacement, velocity, acceleration; D components
   Field spacing;  ///< of each particle, for supports that grow with it [m]; empty where all have dx
-  Field V;       ///< reference volume [m^D], its image's part included for particles on symmetry planes
-  Field m;       ///< mass [kg] (per unit thickness in 2D, per unit area in 1D)
-  Field m_flat;  ///< mass, repeated for each component: weights of norms; zero beyond n
+  Field V;        ///< reference volume [m^D], its image's part included for particles on symmetry planes
+  Field m;        ///< mass [kg] (per unit thickness in 2D, per unit area in 1D)
+  Field m_flat;   ///< mass, repeated for each component: weights of norms; zero beyond n
   std::vector<Vec<D>> B;               ///< outward boundary area vectors, or empty
   std::vector<std::uint8_t> material;  ///< which of `materials` a particle is of
   std::vector<std::shared_ptr<const Material<D>>> materials;
@@ -72,10 +72,11 @@ struct Particles {
   }
 
   std::size_t bytes() const {
-    return X.bytes() + u.bytes() + spacing.bytes() + v.bytes() + a.bytes() + V.bytes() + m.bytes() + m_flat.bytes() +
-           (id.size() + place.size()) * sizeof(Index) + B.size() * sizeof(Vec<D>) + material.size() +
-           planes.size() + cells.size() * sizeof(cells[0]) + cell_share.size() * sizeof(double) +
-           cell_material.size() + (ties.begin.size() * sizeof(std::size_t) + ties.particles.size() * sizeof(Index));
+    return X.bytes() + u.bytes() + spacing.bytes() + v.bytes() + a.bytes() + V.bytes() + m.bytes() +
+           m_flat.bytes() + (id.size() + place.size()) * sizeof(Index) + B.size() * sizeof(Vec<D>) +
+           material.size() + planes.size() + cells.size() * sizeof(cells[0]) +
+           cell_share.size() * sizeof(double) + cell_material.size() +
+           (ties.begin.size() * sizeof(std::size_t) + ties.particles.size() * sizeof(Index));
   }
 };
 

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <functional>
 #include <span>
-#include <taut/geometry/geometry.hpp>
 #include <taut/base/types.hpp>
+#include <taut/geometry/geometry.hpp>
 #include <vector>
 
 namespace taut {

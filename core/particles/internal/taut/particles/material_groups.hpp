@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <taut/particles/particles.hpp>
 #include <taut/base/types.hpp>
+#include <taut/particles/particles.hpp>
 #include <vector>
 
 namespace taut {
@@ -27,7 +27,8 @@ class MaterialGroups {
       : n_(p.n), material_(p.material), only_(static_cast<std::size_t>(chunks()), mixed) {
     for (Index c = 0; c < chunks(); ++c) {
       const auto begin = material_.begin() + first(c), end = material_.begin() + std::min(first(c + 1), n_);
-      if (std::all_of(begin, end, [&](std::uint8_t m) { return m == *begin; })) only_[static_cast<std::size_t>(c)] = *begin;
+      if (std::all_of(begin, end, [&](std::uint8_t m) { return m == *begin; }))
+        only_[static_cast<std::size_t>(c)] = *begin;
     }
   }
 
@@ -37,8 +38,9 @@ class MaterialGroups {
   Index first_slice(Index c) const { return c * chunk_slices; }
   Index last_slice(Index c) const { return std::min(first_slice(c + 1), slices()); }
 
-  /// Calls `evaluate(m, out)` so that component k of particle i of the chunk ends up in out[k * chunk_particles + i]
-  /// from its own material m. On a border of materials each is asked for the whole chunk.
+  /// Calls `evaluate(m, out)` so that component k of particle i of the chunk ends up in out[k *
+  /// chunk_particles + i] from its own material m. On a border of materials each is asked for the whole
+  /// chunk.
   template <int Components, class Evaluate>
   void call(Index c, double* out, Evaluate&& evaluate) const {
     const int only = only_[static_cast<std::size_t>(c)];

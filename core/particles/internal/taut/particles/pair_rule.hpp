@@ -6,9 +6,9 @@
 #include <optional>
 #include <span>
 #include <taut/geometry/geometry.hpp>
-#include <taut/particles/particles.hpp>
-#include <taut/particles/interfaces.hpp>
 #include <taut/geometry/visibility.hpp>
+#include <taut/particles/interfaces.hpp>
+#include <taut/particles/particles.hpp>
 #include <vector>
 
 namespace taut {

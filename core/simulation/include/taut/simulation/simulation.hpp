@@ -7,19 +7,19 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <taut/geometry/geometry.hpp>
-#include <taut/formulations/health.hpp>
-#include <taut/operators/method.hpp>
 #include <taut/base/types.hpp>
+#include <taut/formulations/health.hpp>
+#include <taut/geometry/geometry.hpp>
 #include <taut/materials/material.hpp>
+#include <taut/operators/method.hpp>
 #include <vector>
 
 namespace taut {
 
 /// How and where a formulation broke. A result, not an error.
 struct Breakdown {
-  std::string what;            ///< "J <= 0", "not a number", "runaway energy", "lost neighbours", …
-  std::int64_t particle = -1;  ///< the user's id: index in the cloud as given; -1: none is to blame
+  std::string what;                ///< "J <= 0", "not a number", "runaway energy", "lost neighbours", …
+  std::int64_t particle = -1;      ///< the user's id: index in the cloud as given; -1: none is to blame
   std::array<double, 3> X{}, x{};  ///< reference and current position [m] (unused components zero)
   double time = 0;                 ///< [s]
   std::int64_t step = 0;
@@ -34,12 +34,12 @@ struct RunResult {
   Status status = Status::ok;
   std::optional<Breakdown> breakdown;
   std::int64_t steps = 0;
-  double time = 0;            ///< simulated time reached [s]
-  double loop_seconds = 0;    ///< wall time of the time loop
-  double residual = 0;        ///< relax: |out-of-balance force| / |applied force| at the end
+  double time = 0;              ///< simulated time reached [s]
+  double loop_seconds = 0;      ///< wall time of the time loop
+  double residual = 0;          ///< relax: |out-of-balance force| / |applied force| at the end
   double remaining_motion = 0;  ///< relax: what the slowest motion has still to go over what it has come
-  std::int64_t rebuilds = 0;  ///< updated Lagrangian: pair list rebuilds
-  Health health;              ///< what the run tells of its own trustworthiness
+  std::int64_t rebuilds = 0;    ///< updated Lagrangian: pair list rebuilds
+  Health health;                ///< what the run tells of its own trustworthiness
 
   /// Whether a measure of `health` is beyond its limit: the answer may be wrong, whatever the status.
   bool suspect() const { return health.suspect(); }
@@ -57,9 +57,11 @@ struct RunOptions {
 };
 
 struct RelaxOptions {
-  double tolerance = 1e-6;  ///< wanted |out-of-balance force| / |applied force|, the largest seen where no force is applied
-  static constexpr double still_moving = 1e-4;  ///< the second condition of equilibrium: `remaining_motion` at most
-  double ramp_time = 0;     ///< loads grow smoothly from zero over this time [s]; 0: full at once
+  double tolerance =
+      1e-6;  ///< wanted |out-of-balance force| / |applied force|, the largest seen where no force is applied
+  static constexpr double still_moving =
+      1e-4;              ///< the second condition of equilibrium: `remaining_motion` at most
+  double ramp_time = 0;  ///< loads grow smoothly from zero over this time [s]; 0: full at once
   double free_time = 0;  ///< motion without damping for this time [s] first: what sudden loads do to a body
   std::int64_t max_steps = 10'000'000;
   double cfl = 0.6;
@@ -92,25 +94,26 @@ class Simulation {
   ~Simulation();
   Simulation(Simulation&&) noexcept;
 
-  /// The named face of the body's bounding box: "x_min" … "z_max": its outermost particles or, where the operators act
-  /// through facets (`compatible`, `antisymmetric`) and the cloud has some, the facets there.
+  /// The named face of the body's bounding box: "x_min" … "z_max": its outermost particles or, where the
+  /// operators act through facets (`compatible`, `antisymmetric`) and the cloud has some, the facets there.
   Where<D> face(std::string_view name) const;
 
   /// Another material for a region (bonded to the rest): on node-centred lattices for the cells whose centres
   /// lie in it, elsewhere for its particles. A particle between cells of two materials has volume and mass of
   /// both, and in total Lagrangian forms on pairs a stress of each, made of its neighbours in that material
   /// alone; jitter is taken back there. Its stress, as asked for, is that of the material set last at the
-  /// particle itself. A region that holds particles but no cell makes all materials the particles', as without
-  /// cells; those of updated Lagrangian forms always are.
+  /// particle itself. A region that holds particles but no cell makes all materials the particles', as
+  /// without cells; those of updated Lagrangian forms always are.
   void set_material(const Where<D>& where, std::shared_ptr<const Material<D>> material);
   void set_velocity(const std::function<Vec<D>(const Vec<D>& X)>& velocity);
   /// Initial displacement; constraints still hold.
   void set_displacement(const std::function<Vec<D>(const Vec<D>& X)>& displacement);
 
-  // Boundary conditions and loads. Each \throws InputError when it selects no particle. Conditions act on the particles
-  // that `where` selects by their reference position and, with operators that act through facets, on the facets whose
-  // centres it selects, those of selected particles aside: a wall there holds the displacement that is extrapolated to
-  // the facet, half a spacing beyond the outermost particles of a cell-centred lattice.
+  // Boundary conditions and loads. Each \throws InputError when it selects no particle. Conditions act on the
+  // particles that `where` selects by their reference position and, with operators that act through facets,
+  // on the facets whose centres it selects, those of selected particles aside: a wall there holds the
+  // displacement that is extrapolated to the facet, half a spacing beyond the outermost particles of a
+  // cell-centred lattice.
   void clamp(const Where<D>& where);             ///< displacement zero
   void roller(const Where<D>& where, int axis);  ///< displacement zero along one axis
   /// Displacement along `axis` follows `displacement(X, t)`.
@@ -118,23 +121,23 @@ class Simulation {
                  std::function<double(const Vec<D>& X, double t)> displacement);
   /// Dead load: `force` [N] (per unit thickness in 2D, per unit area in 1D) spread over the selected
   /// particles by their boundary area along the face normal, or evenly where areas are unknown; times
-  /// `history`. With facets over those selected and those of selected particles, from where it is carried to the
-  /// particles by the weights of the extrapolation.
+  /// `history`. With facets over those selected and those of selected particles, from where it is carried to
+  /// the particles by the weights of the extrapolation.
   void load(const Where<D>& where, const Vec<D>& force, History history = {});
   void body_force(const Vec<D>& acceleration, History history = {});  ///< [m/s^2]
   /// The body continues as its mirror image beyond the plane X[axis] = `at` [m], which must bound it.
   /// Particles on the plane slide in it. The loads of a scene are those of the part that is modelled.
   void symmetry_plane(int axis, double at);
 
-  /// \throws InputError for what the parts refuse: particles that coincide or whose neighbours do not span the
-  /// space, masses and stable steps that are no positive finite numbers.
+  /// \throws InputError for what the parts refuse: particles that coincide or whose neighbours do not span
+  /// the space, masses and stable steps that are no positive finite numbers.
   void prepare();
   /// \throws InputError as `check_run`.
   RunResult run(double duration, const RunOptions& options = {});
   /// \throws InputError as `check_relax`.
   RunResult relax(const RelaxOptions& options = {});
-  /// What `run` does before its first step. \throws InputError as `prepare`, for options out of range, and for
-  /// steps too small ever to reach the end in the resolution of time (2^-53 of it).
+  /// What `run` does before its first step. \throws InputError as `prepare`, for options out of range, and
+  /// for steps too small ever to reach the end in the resolution of time (2^-53 of it).
   void check_run(double duration, const RunOptions& options = {});
   /// What `relax` does before its first step. \throws InputError as `prepare`, for options out of range, and
   /// for loads that set a body in a rigid motion that nothing holds: which body and which motions.

@@ -8,12 +8,12 @@
 #include <taut/boundary/loads.hpp>
 #include <taut/boundary/mirror.hpp>
 #include <taut/formulations/formulation.hpp>
-#include <taut/simulation/simulation.hpp>
 #include <taut/integrators/integrator.hpp>
 #include <taut/integrators/step_control.hpp>
 #include <taut/operators/facet_rows.hpp>
 #include <taut/particles/interfaces.hpp>
 #include <taut/simulation/health_watch.hpp>
+#include <taut/simulation/simulation.hpp>
 #include <vector>
 
 namespace taut {
@@ -28,10 +28,10 @@ struct SimulationImpl {
   Cloud<D> cloud;  // in coordinates of its own, from cloud.origin; users see positions from theirs
   Method method;
   std::vector<std::shared_ptr<const Material<D>>> materials;
-  std::vector<std::uint8_t> material;  // of each user's particle
-  std::unique_ptr<Interfaces<D>> interfaces;  // where cells are known and there are several materials
+  std::vector<std::uint8_t> material;                // of each user's particle
+  std::unique_ptr<Interfaces<D>> interfaces;         // where cells are known and there are several materials
   std::vector<typename MirrorMap<D>::Plane> planes;  // in the cloud's coordinates
-  std::vector<std::function<void()>> conditions;  // boundary conditions, applied when places are known
+  std::vector<std::function<void()>> conditions;     // boundary conditions, applied when places are known
   std::function<Vec<D>(const Vec<D>&)> initial_velocity, initial_displacement;
   std::vector<Observer> observers;
 
