@@ -1,7 +1,9 @@
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <taut/formulations/health_sweeps.hpp>
+#include <taut/operators/pair_passes.hpp>
+#include <taut/particles/material_groups.hpp>
 
 namespace taut {
 
@@ -9,17 +11,26 @@ template <int D>
 void check_updated_operator(const Particles<D>& p, const PairList& pairs, const KernelTable& table,
                             Health& health) {
   Field force(static_cast<std::size_t>(p.n), D);
-  for (Index a = 0; a < p.n; ++a) {
-    Vec<D> sum = Vec<D>::Zero();
-    const Vec<D> X = p.X.template vec<D>(static_cast<std::size_t>(a));
-    pairs.for_each(a, [&](Index b, std::int64_t, int) {
-      const Vec<D> X_ab = p.X.template vec<D>(static_cast<std::size_t>(b)) - X;
-      sum -= 2 * p.V.component(0)[a] * p.V.component(0)[b] * table.slope_over_r(pack(X_ab.squaredNorm()))[0] *
-             X_ab;
+  const Columns<D> X(p.X);
+  const double* volume = p.V.component(0);
+  const Index slices = (p.n + lanes - 1) / lanes;
+#pragma omp parallel for schedule(static) if (p.n > parallel_from)
+  for (Index s = 0; s < slices; ++s) {
+    const Index i = s * lanes;
+    Pack Xi[D], sum[D];
+    for (int d = 0; d < D; ++d) Xi[d] = load(X.c[d] + i), sum[d] = pack(0);
+    for_slots(pairs, s, [&](std::int64_t k, auto&& at) TAUT_INLINE_LAMBDA {
+      Pack Xab[D], r2 = pack(0);
+      for (int d = 0; d < D; ++d) {
+        Xab[d] = at(X.c[d]) - Xi[d];
+        r2 += Xab[d] * Xab[d];
+      }
+      const Pack weight = lanes_of(pairs.mask(k)) ? 2 * at(volume) * table.slope_over_r(r2) : pack(0);
+      for (int d = 0; d < D; ++d) sum[d] -= weight * Xab[d];
     });
-    force.template set_vec<D>(static_cast<std::size_t>(a), sum);
+    for (int d = 0; d < D; ++d) store(force.component(d) + i, load(volume + i) * sum[d]);
   }
-  const std::vector<bool> surface = on_surface(p, pairs);
+  const std::vector<std::uint8_t> surface = on_surface(p, pairs);
   // None of these forms closes, free bodies move rightly for all that: told, but no reason to be flagged.
   add_spurious_forces(p, surface, force, told_only, told_only, health);
   add_neighbourhoods(p, pairs, surface, health);
