@@ -43,10 +43,11 @@ MotionSample updated_motion(const Particles<D>& p, const std::vector<std::array<
   const auto n = static_cast<std::size_t>(p.n);
   const auto X = [&](Index i) { return p.X.template vec<D>(static_cast<std::size_t>(i)); };
   const auto x = [&](Index i) { return Vec<D>(X(i) + p.u.template vec<D>(static_cast<std::size_t>(i))); };
+  const auto apart = [&](const Vec<D>& from, const Vec<D>& to) { return p.mirror.nearest(to - from); };
   // F by least squares over what touched: these forms keep none.
   std::vector<Mat<D>> moment(n, Mat<D>::Zero()), F(n, Mat<D>::Zero());
   for (const auto& [a, b] : touching) {
-    const Vec<D> X_ab = X(b) - X(a), x_ab = x(b) - x(a);
+    const Vec<D> X_ab = apart(X(a), X(b)), x_ab = apart(x(a), x(b));
     for (const Index i : {a, b}) {
       moment[static_cast<std::size_t>(i)] += X_ab * X_ab.transpose();
       F[static_cast<std::size_t>(i)] += x_ab * X_ab.transpose();
@@ -70,7 +71,7 @@ MotionSample updated_motion(const Particles<D>& p, const std::vector<std::array<
   std::vector<int> count(n, 0);
   double widest = 0;
   for (const auto& [a, b] : touching) {
-    const Vec<D> X_ab = X(b) - X(a), x_ab = x(b) - x(a);
+    const Vec<D> X_ab = apart(X(a), X(b)), x_ab = apart(x(a), x(b));
     for (const Index i : {a, b}) {
       const auto k = static_cast<std::size_t>(i);
       if (!has[k]) continue;

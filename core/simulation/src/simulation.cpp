@@ -314,6 +314,9 @@ void Simulation<D>::symmetry_plane(int axis, double at) {
   if (axis < 0 || axis >= D)
     throw InputError(fmt::format("symmetry_plane: axis {} is not one of 0 … {}", axis, D - 1));
   const Cloud<D>& cloud = impl_->cloud;
+  for (const auto& period : impl_->periods)
+    if (period.axis == axis)
+      throw InputError(fmt::format("symmetry_plane: the axis {} is periodic", "xyz"[axis]));
   double local = coordinate_difference(at, cloud.origin[axis]), sum = 0;
   for (const Vec<D>& X : cloud.X) sum += X[axis] - local;
   // Particles that are on the plane but for the rounding of its coordinate are on the plane.
@@ -321,6 +324,21 @@ void Simulation<D>::symmetry_plane(int axis, double at) {
     for (const Vec<D>& X : cloud.X)
       if (std::abs(X[axis] - local) <= coordinate_rounding(at)) local = X[axis];
   impl_->planes.push_back({axis, local, sum > 0 ? 0 : 1});
+}
+
+template <int D>
+void Simulation<D>::periodic(int axis, double low, double high) {
+  impl_->must_be_open("periodic");
+  if (axis < 0 || axis >= D)
+    throw InputError(fmt::format("periodic: axis {} is not one of 0 … {}", axis, D - 1));
+  if (!(high > low) || !std::isfinite(high - low))
+    throw InputError(fmt::format("periodic: the end {:g} must be above the beginning {:g}", high, low));
+  const auto same = [axis](const auto& other) { return other.axis == axis; };
+  if (std::any_of(impl_->planes.begin(), impl_->planes.end(), same) ||
+      std::any_of(impl_->periods.begin(), impl_->periods.end(), same))
+    throw InputError(
+        fmt::format("periodic: the axis {} has a symmetry plane or a period already", "xyz"[axis]));
+  impl_->periods.push_back({axis, coordinate_difference(low, impl_->cloud.origin[axis]), high - low});
 }
 
 template <int D>
@@ -348,9 +366,15 @@ void enclose(Cloud<D>& cloud) {
         100 * change));
 }
 
-// The body goes on across a symmetry plane: what ends there is no boundary.
+// The body goes on across a symmetry plane or the end of a period: what ends there is no boundary.
 template <int D>
-void open_facets_on(const std::vector<typename MirrorMap<D>::Plane>& planes, Cloud<D>& cloud) {
+void open_facets_on(const std::vector<typename MirrorMap<D>::Plane>& planes,
+                    const std::vector<typename MirrorMap<D>::Period>& periods, Cloud<D>& cloud) {
+  for (const auto& period : periods)
+    for (Facet<D>& f : cloud.facets) {
+      const double in = f.centre[period.axis] - period.low;
+      if (std::min(in, period.length - in) < 1e-6 * cloud.dx) f.area.setZero();
+    }
   for (const auto& plane : planes)
     for (Facet<D>& f : cloud.facets)
       if ((f.centre[plane.axis] - plane.at) * (plane.side == 0 ? -1 : 1) > -1e-6 * cloud.dx) f.area.setZero();
@@ -389,15 +413,17 @@ void Simulation<D>::prepare() {
   const Interfaces<D>* interfaces = s.met();
   const MaterialsMeet meet = materials_meet(s.method.formulation);
   if (interfaces) interfaces->straighten(s.cloud);
-  if (needs_areas(s.method.operators) && s.planes.empty()) enclose(s.cloud);
-  open_facets_on<D>(s.planes, s.cloud);
+  if (needs_areas(s.method.operators) && s.planes.empty() && s.periods.empty()) enclose(s.cloud);
+  open_facets_on<D>(s.planes, s.periods, s.cloud);
   const double widest = s.cloud.spacing.empty()
                             ? s.cloud.dx
                             : *std::max_element(s.cloud.spacing.begin(), s.cloud.spacing.end());
   const double reach = s.method.support_dx * widest * (1 + s.method.skin);
   for (const auto& material : s.materials) check_wave_speed(*material);
   const bool twins = interfaces && meet == MaterialsMeet::in_twins;
-  s.particles = assemble<D>(s.cloud, s.materials, s.material, s.planes, reach, interfaces, twins);
+  s.particles =
+      assemble<D>(s.cloud, s.materials, s.material,
+                  {s.planes, s.periods, reach, meet == MaterialsMeet::in_particles}, interfaces, twins);
   // Areas that are guesses tell nothing. Forms that find their neighbours anew let bodies meet.
   if (meet != MaterialsMeet::in_particles && (areas_known || s.cloud.body))
     s.particles.rule = PairRule<D>::make(s.cloud, s.particles, s.planes, twins ? interfaces : nullptr, reach);
@@ -470,7 +496,7 @@ void Simulation<D>::check_relax(const RelaxOptions& options) {
   const SimulationImpl<D>& s = *impl_;
   if (s.formulation->failure() || s.loads.empty()) return;
   const std::vector<double> times = relaxation_times(s, options);
-  require_held<D>({s.particles, s.formulation->bodies(), s.constraints, s.loads, s.planes,
+  require_held<D>({s.particles, s.formulation->bodies(), s.constraints, s.loads, s.planes, s.periods,
                    s.method.support_dx * s.cloud.dx, times});
 }
 

@@ -128,6 +128,11 @@ class Simulation {
   /// The body continues as its mirror image beyond the plane X[axis] = `at` [m], which must bound it.
   /// Particles on the plane slide in it. The loads of a scene are those of the part that is modelled.
   void symmetry_plane(int axis, double at);
+  /// The body repeats itself along the axis, once every `high` - `low` [m], between which it lies. Particles
+  /// must not lie on both ends, which are one place, except with formulations on cells: there the nodes of
+  /// both ends must match, and are tied. Displacements and velocities are periodic. \throws InputError for an
+  /// axis that has a symmetry plane or a period already, and in `prepare` for a body that does not fit.
+  void periodic(int axis, double low, double high);
 
   /// \throws InputError for what the parts refuse: particles that coincide or whose neighbours do not span
   /// the space, masses and stable steps that are no positive finite numbers.

@@ -31,7 +31,8 @@ struct SimulationImpl {
   std::vector<std::uint8_t> material;                // of each user's particle
   std::unique_ptr<Interfaces<D>> interfaces;         // where cells are known and there are several materials
   std::vector<typename MirrorMap<D>::Plane> planes;  // in the cloud's coordinates
-  std::vector<std::function<void()>> conditions;     // boundary conditions, applied when places are known
+  std::vector<typename MirrorMap<D>::Period> periods;  // likewise
+  std::vector<std::function<void()>> conditions;       // boundary conditions, applied when places are known
   std::function<Vec<D>(const Vec<D>&)> initial_velocity, initial_displacement;
   std::vector<Observer> observers;
 
