@@ -17,7 +17,10 @@ AutoFacts facts_of(const Scene& scene, const RunSpec& run, const std::set<std::s
   const MaterialSpec material = material_of(scene, run, {});
   facts.rate_law = has_rate_law(material.model, material.parameters);
   const bool from_file = scene.geometry.type == "csv";
-  facts.inside = from_file ? has_centroids(scene) : run.lattice.kind == Lattice::cell_centred;
+  if (from_file)
+    add_facts_of_file(scene, facts);
+  else
+    facts.inside = run.lattice.kind == Lattice::cell_centred;
   facts.cells = !from_file && run.lattice.kind == Lattice::node_centred;
   for (const std::string& key : pair_keys()) facts.asks_for_pairs |= given.contains(key);
   facts.free_thickness =

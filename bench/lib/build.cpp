@@ -231,19 +231,22 @@ double shortest_edge(const Scene& scene) {
 namespace {
 
 template <int D>
-bool file_lies_inside(const Scene& scene) {
+void add_facts(const Scene& scene, AutoFacts& facts) {
   try {
-    return lies_inside(read_cloud<D>(scene.geometry.file));
+    const Cloud<D> cloud = read_cloud<D>(scene.geometry.file);
+    facts.inside = lies_inside(cloud);
+    facts.support = spanning_support(cloud);
   } catch (const InputError&) {
-    return false;  // said with its place when the cloud is built
+    // said with its place when the cloud is built
   }
 }
 
 }  // namespace
 
-bool has_centroids(const Scene& scene) {
-  if (scene.dimension == 1) return file_lies_inside<1>(scene);
-  return scene.dimension == 2 ? file_lies_inside<2>(scene) : file_lies_inside<3>(scene);
+void add_facts_of_file(const Scene& scene, AutoFacts& facts) {
+  if (scene.dimension == 1) add_facts<1>(scene, facts);
+  if (scene.dimension == 2) add_facts<2>(scene, facts);
+  if (scene.dimension == 3) add_facts<3>(scene, facts);
 }
 
 template <int D>

@@ -3,6 +3,7 @@
 /// From a scene, a run and a sweep point to a simulation.
 
 #include <lib/scene.hpp>
+#include <taut/formulations/auto_method.hpp>
 #include <taut/simulation/simulation.hpp>
 
 namespace taut::bench {
@@ -15,9 +16,10 @@ Cloud<D> build_cloud(const Scene& scene, const RunSpec& run, const SweepPoint& p
 template <int D>
 Simulation<D> build_simulation(const Scene& scene, const RunSpec& run, const SweepPoint& point);
 
-/// Whether the particles of the scene's file lie inside of the body's surface, as centroids of elements do;
-/// false for a file that cannot be read.
-bool has_centroids(const Scene& scene);
+/// What the particles of the scene's file tell the rules of `auto`: whether they lie inside of the body's
+/// surface, as centroids of elements do, and the support that their neighbours need. Nothing for a file that
+/// cannot be read.
+void add_facts_of_file(const Scene& scene, AutoFacts& facts);
 
 /// Whether a point lies in the scene's shape (not a cloud from a file) or about `distance` [m] from it.
 template <int D>

@@ -59,3 +59,29 @@ TEST_CASE("a method that says nothing takes an updated form for stress rates") {
   CHECK(rates.kernel == "sinc5");
   CHECK(rates.support_dx == 2.4);
 }
+
+TEST_CASE("a method that says nothing gets the support that irregular particles need") {
+  const auto rows_apart = [](double apart) {
+    Cloud<2> cloud;
+    cloud.dx = 1;
+    for (int j = 0; j < 6; ++j)
+      for (int i = 0; i < 8; ++i) {
+        cloud.X.emplace_back(i, apart * j);
+        cloud.V.push_back(apart);
+      }
+    return cloud;
+  };
+  // Rows come within reach, but next to nothing of the kernel is left there.
+  CHECK(spanning_support(rows_apart(1.0)) == 1.5);
+  CHECK(spanning_support(rows_apart(1.49)) == 1.7);
+  CHECK(spanning_support(rows_apart(1.69)) == 2.0);
+  CHECK(spanning_support(rows_apart(2.2)) == 2.4);
+  CHECK(spanning_support(rows_apart(2.7)) == 2.8);
+  // Out of reach altogether: not for auto to say.
+  CHECK(spanning_support(rows_apart(4)) == 1.5);
+  CHECK(method_of(rows_apart(1.49), {}).support_dx == 1.7);
+  CHECK(method_of(rows_apart(1.49), {.operators = "compatible"}).support_dx == 1.5);
+  Cloud<2> graded = rows_apart(1.69);
+  graded.spacing.assign(graded.size(), 1.69);
+  CHECK(spanning_support(graded) == 1.5);
+}

@@ -19,6 +19,7 @@ struct AutoFacts {
   bool asks_for_pairs = false;  ///< operators, a kernel or another key that means pairs is given
   bool free_thickness = false;  ///< plane stress: volume may change out of plane; 1D: there is no other way
   double nu = 0;                ///< largest Poisson's ratio
+  double support = 1.5;         ///< that the neighbours of irregular clouds need, as `spanning_support` tells
 };
 
 /// Of the rules of one key the first that applies sets it. A rule without a value only says something.
@@ -49,6 +50,14 @@ std::vector<FiredRule> apply_auto_rules(const AutoFacts& facts, const std::set<s
 /// spacings. Finds the facets where the cloud brings neither these nor areas; false where that fails.
 template <int D>
 bool lies_inside(const Cloud<D>& cloud);
+
+/// The least of the supports 1.5, 1.7, 2, 2.4 and 2.8, over the spacing of a particle or the wider one of a
+/// pair, within which the neighbours of every particle span the space: weighted by (1 - r / R)^2 their second
+/// moments have no eigenvalue below 0.015 of the sum of all. Where they hardly do, operators weigh few
+/// neighbours by large numbers, and a single particle shortens the steps of all. 1.5 for lattices, and where
+/// none of them is enough.
+template <int D>
+double spanning_support(const Cloud<D>& cloud);
 
 /// The method with what it leaves open filled in: by the rules where it leaves all of it open; else what
 /// names no formulation is `tl_displacement`, and `corrected` operators, the kernel `wendland_c2` and a
