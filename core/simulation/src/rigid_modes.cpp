@@ -39,8 +39,8 @@ class Body {
     negligible_ = std::max(1e-9, size_ > 0 ? 64 * rounding * far / size_ : 0);
   }
   // The displacement of X in each motion.
-  Eigen::Matrix<double, D, motions> field(const Vec<D>& X) const {
-    Eigen::Matrix<double, D, motions> f = Eigen::Matrix<double, D, motions>::Zero();
+  Fixed<D, motions> field(const Vec<D>& X) const {
+    Fixed<D, motions> f = Fixed<D, motions>::Zero();
     f.template leftCols<D>().setIdentity();
     const Vec<D> r = size_ > 0 ? Vec<D>((X - centre_) / size_) : Vec<D>::Zero();
     if constexpr (D == 2) f.col(2) = Vec<2>(-r[1], r[0]);
@@ -159,7 +159,7 @@ class Body {
       else
         spin = mode.template tail<3>() / size_;
       const Vec<3> from_centre = spin.cross(shift) / spin.squaredNorm();  // the point, or axis, that stays
-      Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();                  // of forces about that point
+      Mat<3> moments = Mat<3>::Zero();                  // of forces about that point
       moments.template topLeftCorner<D, D>() =
           first_moments_ - resultant_ * from_centre.template head<D>().transpose();
       const double virial = spin.squaredNorm() * moments.trace() - spin.dot(moments * spin);
