@@ -1,6 +1,7 @@
 // taut-convergence [STUDY…]: which methods converge, how fast, and at what cost.
 
 #include <convergence/convergence.hpp>
+#include <lib/options.hpp>
 
 int main(int argc, char** argv) {
   using namespace taut::bench;

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <convergence/kirsch.hpp>
 #include <convergence/refinement.hpp>
@@ -8,6 +7,7 @@
 #include <lib/names.hpp>
 #include <lib/progress.hpp>
 #include <taut/base/error.hpp>
+#include <taut/base/small_solve.hpp>
 #include <taut/formulations/auto_method.hpp>
 #include <taut/simulation/simulation.hpp>
 
@@ -58,9 +58,8 @@ Outcome run_sheet(const Method& method, bool fitted, double dx, int threads) {
     // The rim only holds the plate: it is told what to do.
     if (rim(cloud.X[i])) continue;
     const Mat<2> sigma = simulation.first_piola_kirchhoff(i), truth = exact.stress(cloud.X[i]);
-    const Eigen::Matrix2d symmetric = (sigma + sigma.transpose()) / 2;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> principal(symmetric, Eigen::EigenvaluesOnly);
-    peak = std::max(peak, principal.eigenvalues()[1]);
+    const Mat<2> symmetric = (sigma + sigma.transpose()) / 2;
+    peak = std::max(peak, symmetric_eigen<2>(symmetric).values[1]);
     difference += cloud.V[i] * (sigma - truth).squaredNorm();
     size += cloud.V[i] * truth.squaredNorm();
   }

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 #include <lib/chart.hpp>
-#include <lib/options.hpp>
+#include <lib/common_options.hpp>
 #include <lib/results.hpp>
 #include <lib/text_table.hpp>
 #include <string>

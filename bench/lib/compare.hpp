@@ -2,7 +2,7 @@
 /// \file
 /// The job of taut-compare.
 
-#include <lib/options.hpp>
+#include <lib/common_options.hpp>
 #include <optional>
 #include <string>
 #include <vector>

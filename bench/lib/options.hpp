@@ -3,19 +3,11 @@
 /// What all executables share: options, exit codes, errors on standard error.
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
 #include <functional>
+#include <lib/common_options.hpp>
 #include <string>
 
 namespace taut::bench {
-
-struct CommonOptions {
-  std::filesystem::path out;
-  int threads = 0;  ///< set to what is used
-  bool quick = false, quiet = false;
-};
-
-enum ExitCode { done = 0, run_failed = 1, bad_input = 2 };
 
 /// Adds --out (default out/NAME), --threads, --quick, --quiet, --version to `app`, parses, sets the number of
 /// threads (no more than processors) and calls `body`. Returns the exit code: 0 done, 1 run failed, 2 bad

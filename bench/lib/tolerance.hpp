@@ -3,7 +3,7 @@
 /// taut-compare --tolerance: the cheapest method and spacing that meet a wanted accuracy.
 
 #include <lib/candidates.hpp>
-#include <lib/options.hpp>
+#include <lib/common_options.hpp>
 #include <lib/results.hpp>
 #include <lib/scene.hpp>
 #include <string>

@@ -3,11 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nanoflann.hpp>
 #include <random>
 #include <scaling/body.hpp>
 #include <scaling/lists.hpp>
 #include <taut/base/error.hpp>
+#include <taut/neighbors/nanoflann.hpp>
+#include <tuple>
 
 namespace taut::bench {
 namespace {
@@ -105,12 +106,11 @@ SearchedRows nanoflann_lists(const ListCloud& cloud, int threads) {
     piece.first = cloud.size() * t / all;
     piece.row.reserve(last - piece.first + 1);
     piece.neighbour.reserve((last - piece.first) * static_cast<std::size_t>(neighbours));
-    std::vector<std::pair<Index, double>> found;
-    nanoflann::SearchParams parameters;
-    parameters.sorted = false;
+    std::vector<detail::FoundPoint<Index, double>> found;
+    const detail::SearchParameters parameters = detail::unsorted_search();
     for (std::size_t i = piece.first; i < last; ++i) {
       const double point[3] = {cloud.X.component(0)[i], cloud.X.component(1)[i], cloud.X.component(2)[i]};
-      tree.radiusSearch(point, cloud.radius(i) * cloud.radius(i), found, parameters);
+      std::ignore = tree.radiusSearch(point, cloud.radius(i) * cloud.radius(i), found, parameters);
       for (const auto& [b, r2] : found)
         if (b != static_cast<Index>(i)) piece.neighbour.push_back(b);
       piece.row.push_back(piece.neighbour.size());

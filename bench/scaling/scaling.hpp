@@ -4,7 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <lib/options.hpp>
+#include <lib/common_options.hpp>
 #include <string>
 #include <vector>
 

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <map>
-#include <nanoflann.hpp>
 #include <taut/neighbors/kd_tree.hpp>
+#include <taut/neighbors/nanoflann.hpp>
 
 namespace taut::detail::inline TAUT_SIMD_NAMESPACE {
 namespace {
@@ -48,6 +48,8 @@ struct Points {
 // Receives particles within reach from the tree.
 template <int D>
 struct Receiver {
+  using DistanceType = double;
+  using IndexType = Index;
   const Points<D>& points;
   double reach2;
   SliceSet& near;
@@ -60,6 +62,7 @@ struct Receiver {
     near.insert(&s, 1);
     return true;
   }
+  void sort() {}  // newer versions name it, for searches that are to be sorted
 };
 
 }  // namespace
@@ -94,7 +97,7 @@ void KdTree<D>::find(const SliceGroup<D>& group, Workspace& work, std::vector<In
       Receiver<D> receiver{tree->points, reach * reach, work.near};
       double at[D];
       for (int d = 0; d < D; ++d) at[d] = points_.x[d][a];
-      tree->index.findNeighbors(receiver, at, nanoflann::SearchParams(0, 0.0f, false));
+      tree->index.findNeighbors(receiver, at, unsorted_search());
     }
   slices.clear();
   work.near.drain(slices);

@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
-#include <Eigen/SVD>
 #include <taut/base/error.hpp>
+#include <taut/base/small_solve.hpp>
 
 #include "support.hpp"
 
@@ -22,9 +22,8 @@ Mat<D> polar_rotation_by_svd(const Mat<D>& F) {
   if constexpr (D == 1) {
     return Mat<1>::Identity();
   } else {
-    const Eigen::JacobiSVD<Mat<D>, Eigen::NoQRPreconditioner> svd(F,
-                                                                  Eigen::ComputeFullU | Eigen::ComputeFullV);
-    return svd.matrixU() * svd.matrixV().transpose();
+    const Spectrum<D> svd = right_singular<D>(F);
+    return F * svd.vectors * svd.values.cwiseInverse().asDiagonal() * svd.vectors.transpose();
   }
 }
 

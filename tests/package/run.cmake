@@ -1,5 +1,5 @@
 # Configures, builds and runs a consumer project:
-#   cmake -DKIND=… -DSOURCE=… -DBUILD=… -DINSTALL_FROM=… -DCOMPILER=… [-DOTHER_COMPILER=…] [-DFLAGS=…] -P run.cmake
+#   cmake -DKIND=… -DSOURCE=… -DBUILD=… -DINSTALL_FROM=… -DCOMPILER=… [-DOTHER_COMPILER=…] [-DFLAGS=…] [-DCCACHE=…] -P run.cmake
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result)
   if(result)
@@ -8,14 +8,28 @@ function(run)
 endfunction()
 
 file(REMOVE_RECURSE ${BUILD})
-set(launcher -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER})
+set(launcher)
+if(CCACHE)
+  set(launcher -DCMAKE_CXX_COMPILER_LAUNCHER=${CCACHE})
+  set(ENV{CCACHE_SLOPPINESS} pch_defines,time_macros)
+endif()
 if(KIND STREQUAL "find_package")
   # One package, and programs by each compiler, optimised and not, with flags other than the library's.
+  # The package is used elsewhere than where it was installed, and names no place of this machine.
   run(${CMAKE_COMMAND} --install ${INSTALL_FROM} --prefix ${BUILD}/prefix)
+  file(RENAME ${BUILD}/prefix ${BUILD}/moved)
+  file(GLOB_RECURSE exported ${BUILD}/moved/*.cmake)
+  foreach(file ${exported})
+    file(READ ${file} text)
+    string(REGEX MATCH "[;\" ]/[A-Za-z][^;\" \n]*" place "${text}")
+    if(place OR NOT text)
+      message(FATAL_ERROR "${file} names a place of this machine: ${place}")
+    endif()
+  endforeach()
   foreach(compiler ${COMPILER} ${OTHER_COMPILER})
     get_filename_component(name ${compiler} NAME)
     run(${CMAKE_COMMAND} -S ${SOURCE}/${KIND} -B ${BUILD}/${name} -G "Ninja Multi-Config"
-        -DCMAKE_CXX_COMPILER=${compiler} ${launcher} -DCMAKE_PREFIX_PATH=${BUILD}/prefix -DFLAGS=${FLAGS})
+        -DCMAKE_CXX_COMPILER=${compiler} ${launcher} -DCMAKE_PREFIX_PATH=${BUILD}/moved -DFLAGS=${FLAGS})
     foreach(type Debug Release)
       run(${CMAKE_COMMAND} --build ${BUILD}/${name} --config ${type} --target layouts)
       run(${BUILD}/${name}/${type}/layouts)

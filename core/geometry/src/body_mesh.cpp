@@ -8,6 +8,7 @@
 #include <random>
 #include <taut/base/describe.hpp>
 #include <taut/base/error.hpp>
+#include <taut/base/small_solve.hpp>
 #include <taut/geometry/body_mesh.hpp>
 #include <taut/geometry/spacing.hpp>
 
@@ -260,8 +261,9 @@ BodyMesh<D> body_mesh(const std::vector<Vec<D>>& X, const std::vector<double>& V
   std::vector<double> radius(all.size()), width(all.size());
   for (std::size_t s = 0; s < all.size(); ++s) {
     const Mat<D> edges = edges_of<D>(moved, all[s]);
-    const Vec<D> half = 0.5 * edges.colwise().squaredNorm().transpose();
-    radius[s] = unit * edges.transpose().fullPivLu().solve(half).norm();
+    Vec<D> centre = 0.5 * edges.colwise().squaredNorm().transpose();
+    const bool solid = solve_small<D, 1>(edges.transpose(), centre);
+    radius[s] = solid ? unit * centre.norm() : std::numeric_limits<double>::infinity();
     if (!std::isfinite(radius[s])) radius[s] = std::numeric_limits<double>::infinity();
   }
   const std::vector<double> spacing = local_spacing<D>(X, distance, all, radius);

@@ -1,5 +1,5 @@
-#include <Eigen/LU>
 #include <taut/base/error.hpp>
+#include <taut/base/small_solve.hpp>
 #include <taut/geometry/geometry.hpp>
 
 namespace taut {
@@ -32,10 +32,9 @@ double close_areas(Cloud<D>& cloud) {
     defect -= f * A.transpose();
     total += A.norm();
   });
-  const Eigen::FullPivLU<Fixed<D + 1>> lu(normal);
-  if (!lu.isInvertible())
+  if (!solve_small(normal, defect))
     throw InputError("the boundary areas do not enclose the body: its surface particles lie on one plane");
-  const Fixed<D + 1, D> multiplier = lu.solve(defect);
+  const Fixed<D + 1, D>& multiplier = defect;
   each([&](Vec<D>& A, const Vec<D>& x) {
     const Vec<D> delta = A.norm() * (multiplier.transpose() * basis(x));
     change += delta.norm();

@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <taut/base/error.hpp>
+#include <taut/base/small_solve.hpp>
 #include <taut/geometry/body_mesh.hpp>
 #include <taut/geometry/geometry.hpp>
 #include <taut/geometry/surface.hpp>
@@ -100,13 +100,11 @@ std::vector<Vec<D>> mitres(const Surface<D>& surface, const std::vector<double>&
       wanted += distance[f] * A;
       farthest = std::max(farthest, distance[f]);
     });
-    using Matrix = Eigen::Matrix<double, D, D>;
-    const Eigen::SelfAdjointEigenSolver<Matrix> eigen(Matrix{normals});
+    const Spectrum<D> eigen = symmetric_eigen<D>(normals);
     way[v].setZero();
     for (int d = 0; d < D; ++d)
-      if (eigen.eigenvalues()[d] > parallel * eigen.eigenvalues()[D - 1])
-        way[v] +=
-            eigen.eigenvectors().col(d) * eigen.eigenvectors().col(d).dot(wanted) / eigen.eigenvalues()[d];
+      if (eigen.values[d] > parallel * eigen.values[D - 1])
+        way[v] += eigen.vectors.col(d) * eigen.vectors.col(d).dot(wanted) / eigen.values[d];
     const double length = way[v].norm();
     if (length > longest * farthest) way[v] *= longest * farthest / length;
   }

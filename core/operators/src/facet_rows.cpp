@@ -1,4 +1,4 @@
-#include <Eigen/Eigenvalues>
+#include <taut/base/small_solve.hpp>
 #include <taut/operators/facet_rows.hpp>
 
 namespace taut {
@@ -9,14 +9,12 @@ namespace {
 template <int D>
 Mat<D> inverse_of_spanned(const Mat<D>& moment) {
   constexpr double flat = 1e-6;
-  using Matrix = Eigen::Matrix<double, D, D>;
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(Matrix{moment});
-  const double largest = eigen.eigenvalues()[D - 1];
+  const Spectrum<D> eigen = symmetric_eigen<D>(moment);
+  const double largest = eigen.values[D - 1];
   Mat<D> inverse = Mat<D>::Zero();
   for (int d = 0; d < D; ++d)
-    if (eigen.eigenvalues()[d] > flat * largest)
-      inverse +=
-          eigen.eigenvectors().col(d) * eigen.eigenvectors().col(d).transpose() / eigen.eigenvalues()[d];
+    if (eigen.values[d] > flat * largest)
+      inverse += eigen.vectors.col(d) * eigen.vectors.col(d).transpose() / eigen.values[d];
   return inverse;
 }
 

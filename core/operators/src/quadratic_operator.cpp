@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <taut/base/describe.hpp>
 #include <taut/base/error.hpp>
+#include <taut/base/small_solve.hpp>
 #include <taut/operators/pair_vectors.hpp>
 #include <taut/operators/quadratic_operator.hpp>
 
@@ -85,12 +85,12 @@ class QuadraticFit {
     if (!(normal.diagonal().minCoeff() > 0)) return false;
     const Terms scale = normal.diagonal().cwiseSqrt().cwiseInverse();
     normal = scale.asDiagonal() * normal * scale.asDiagonal();
-    const Eigen::LDLT<Fixed<terms>> factors(normal);
-    if (!(factors.vectorD().minCoeff() > least_pivot)) return false;
+    const SmallLdlt<terms> factors(normal);
+    if (!(factors.least_pivot() > least_pivot)) return false;
     using Columns = Fixed<terms, D>;
     const Columns unit = Columns::Identity();
     Columns columns = factors.solve(unit);
-    columns += factors.solve(unit - normal * columns);  // what a pivot of 1e-5 costs in digits
+    columns += factors.solve(Columns(unit - normal.lazyProduct(columns)));  // what a pivot of 1e-5 costs in digits
     auto& C = coefficients_[static_cast<std::size_t>(a)];
     C = (scale.asDiagonal() * columns * scale.template head<D>().asDiagonal()).transpose() / p_.dx;
     double sum = 0;

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <string>
 #include <taut/base/describe.hpp>
 #include <taut/base/error.hpp>
+#include <taut/base/small_solve.hpp>
 #include <taut/simulation/rigid_modes.hpp>
 
 namespace taut {
@@ -22,8 +22,8 @@ class Body {
  public:
   static constexpr int turns = D * (D - 1) / 2;
   static constexpr int motions = D + turns;
-  using Motion = Eigen::Matrix<double, motions, 1>;  // D translations, then turns, of unit size at the rim
-  using Directions = Eigen::Matrix<double, motions, motions>;
+  using Motion = Fixed<motions, 1>;  // D translations, then turns, of unit size at the rim
+  using Directions = Fixed<motions>;
 
   // First all positions, to know the centre and the size.
   void include(const Vec<D>& X, Index id) {
@@ -39,8 +39,8 @@ class Body {
     negligible_ = std::max(1e-9, size_ > 0 ? 64 * rounding * far / size_ : 0);
   }
   // The displacement of X in each motion.
-  Eigen::Matrix<double, D, motions> field(const Vec<D>& X) const {
-    Eigen::Matrix<double, D, motions> f = Eigen::Matrix<double, D, motions>::Zero();
+  Fixed<D, motions> field(const Vec<D>& X) const {
+    Fixed<D, motions> f = Fixed<D, motions>::Zero();
     f.template leftCols<D>().setIdentity();
     const Vec<D> r = size_ > 0 ? Vec<D>((X - centre_) / size_) : Vec<D>::Zero();
     if constexpr (D == 2) f.col(2) = Vec<2>(-r[1], r[0]);
@@ -97,19 +97,19 @@ class Body {
 
   // Splits what is free into translations, which are along axes since constraints are, and turns.
   void find_free() {
-    const Eigen::JacobiSVD<Directions> svd(rows_, Eigen::ComputeFullV);
-    const double small = negligible_ * svd.singularValues()[0];
+    const Spectrum<motions> held = right_singular<motions>(rows_);
+    const double small = negligible_ * held.values[0];
     Directions free = Directions::Zero();  // columns span the free motions
     for (int k = 0; k < motions; ++k)
-      if (!(svd.singularValues()[k] > small)) free.col(k) = svd.matrixV().col(k);
+      if (!(held.values[k] > small)) free.col(k) = held.vectors.col(k);
     for (int d = 0; d < D; ++d) {
       slides_[static_cast<std::size_t>(d)] = !(rows_.col(d).norm() > small);
       if (slides_[static_cast<std::size_t>(d)]) free.row(d).setZero();
     }
-    const Eigen::JacobiSVD<Directions> rest(free, Eigen::ComputeFullU);
+    const Spectrum<motions> rest = right_singular<motions>(free.transpose());
     turning_.clear();
     for (int k = 0; k < motions; ++k)
-      if (rest.singularValues()[k] > 1e-6 && size_ > 0) turning_.push_back(rest.matrixU().col(k));
+      if (rest.values[k] > 1e-6 && size_ > 0) turning_.push_back(rest.vectors.col(k));
   }
   bool is_free() const {
     return !turning_.empty() || std::find(slides_.begin(), slides_.end(), true) != slides_.end();
@@ -165,7 +165,7 @@ class Body {
       else
         spin = mode.template tail<3>() / size_;
       const Vec<3> from_centre = spin.cross(shift) / spin.squaredNorm();  // the point, or axis, that stays
-      Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();                  // of forces about that point
+      Mat<3> moments = Mat<3>::Zero();                  // of forces about that point
       moments.template topLeftCorner<D, D>() =
           first_moments_ - resultant_ * from_centre.template head<D>().transpose();
       const double virial = spin.squaredNorm() * moments.trace() - spin.dot(moments * spin);

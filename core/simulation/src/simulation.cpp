@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <taut/base/error.hpp>
+#include <taut/base/small_solve.hpp>
 #include <taut/base/powers.hpp>
 #include <taut/formulations/assembly.hpp>
 #include <taut/formulations/auto_method.hpp>
@@ -627,9 +627,8 @@ Vec<D> Simulation<D>::displacement_at(const Vec<D>& X) const {
     normal += weight * basis * basis.transpose();
     right += weight * basis * displacement(i).transpose();
   }
-  const Eigen::FullPivLU<Fixed<D + 1>> lu(normal);
-  if (!lu.isInvertible()) return displacement(near.front().second);
-  return lu.solve(right).row(0).transpose();
+  if (!solve_small(normal, right)) return displacement(near.front().second);
+  return right.row(0).transpose();
 }
 
 template <int D>
