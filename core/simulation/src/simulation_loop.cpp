@@ -37,6 +37,7 @@ class Loop {
   /// Counts a step that ended at time t.
   void stepped(double t) {
     s_.time = t;
+    s_.step_ends();
     if (++result.steps % inspect_every == 0) s_.formulation->inspect();
     watch_.stepped(result.steps);
   }
@@ -190,6 +191,7 @@ RunResult integrate(SimulationImpl<D>& s, Integrator& integrator, double duratio
     // No sliver of a step that rounding has left.
     const bool last = s.time + dt >= end - 1e-6 * dt;
     if (last) dt = end - s.time;
+    s.step_begins();
     integrator.step(*s.formulation, s.time, dt);
     loop.stepped(last ? end : s.time + dt);
     notify(s);
@@ -216,11 +218,14 @@ RunResult find_equilibrium(SimulationImpl<D>& s, const RelaxOptions& options) {
   while (!stopped && s.time - start < options.free_time && result.steps < options.max_steps &&
          loop.intact()) {
     const double dt = s.step_control.next(options.cfl * s.formulation->stable_step());
+    s.step_begins();
     undamped->step(*s.formulation, s.time, dt);
     loop.stepped(s.time + dt);
     stopped = loop.stopped(options.progress, 0);
   }
+  if (result.steps > 0) s.step_begins();
   undamped->complete(*s.formulation, s.time);
+  s.step_ends();
   Relaxation relaxation(*s.formulation);
   double largest = 0;
   // Where nothing is applied and nothing will be, round-off must not be compared with round-off.
@@ -235,6 +240,7 @@ RunResult find_equilibrium(SimulationImpl<D>& s, const RelaxOptions& options) {
       loop.give_up(dt == 0 && has_numbers(s.particles) ? "step too small to advance time" : "not a number");
       break;
     }
+    s.step_begins();
     relaxation.step(s.time, dt);
     loop.stepped(s.time + dt);
     largest = std::max(largest, relaxation.force_norm());

@@ -51,8 +51,8 @@ using Progress = std::function<bool(std::int64_t steps, double time, double frac
 
 struct RunOptions {
   std::string integrator = "leapfrog";  ///< "leapfrog" or "central_difference"
-  double cfl = 0.6;                     ///< fraction of the CFL step
-  double max_step = 0;                  ///< upper bound of the step [s]; 0 = none
+  double cfl = 0.6;     ///< fraction of the stable step, 0 < cfl <= 1; more only beside a `max_step`
+  double max_step = 0;  ///< upper bound of the step [s]; 0 = none
   Progress progress{};
 };
 
@@ -86,6 +86,16 @@ void write_vtkhdf(const std::string& file, const Simulation<D>& simulation);
 
 /// One or more bodies under one method. Everything is set before the first `run` or `relax`; set-up
 /// (ordering, pair lists, operators) happens then, or when `prepare` is called.
+///
+/// Errors are `taut::Error`s; std::bad_alloc and what functions of the user's throw come out as they are. A
+/// call that throws leaves the simulation as it was before, with these exceptions. A run that ends with an
+/// error between two steps (out of an observer or a progress call) leaves the state of the last step. One
+/// that ends within a step (out of a material, a history, a prescribed displacement) leaves a state that
+/// can be looked at, but the simulation cannot go on and says so.
+///
+/// Functions that are called meanwhile may look at the simulation and add observers, but not set it up or
+/// run it. One that has been moved from can be assigned to and destroyed; every other call is an InputError.
+/// Ids are the indices of the cloud; others are an InputError.
 template <int D>
 class Simulation {
  public:
@@ -93,6 +103,7 @@ class Simulation {
   Simulation(Cloud<D> cloud, std::shared_ptr<const Material<D>> material, Method method);
   ~Simulation();
   Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
 
   /// The named face of the body's bounding box: "x_min" … "z_max": its outermost particles or, where the
   /// operators act through facets (`compatible`, `antisymmetric`) and the cloud has some, the facets there.
@@ -132,9 +143,9 @@ class Simulation {
   /// \throws InputError for what the parts refuse: particles that coincide or whose neighbours do not span
   /// the space, masses and stable steps that are no positive finite numbers.
   void prepare();
-  /// \throws InputError as `check_run`.
+  /// \throws InputError as `check_run`, RunError when an earlier error has left no state to go on from.
   RunResult run(double duration, const RunOptions& options = {});
-  /// \throws InputError as `check_relax`.
+  /// \throws InputError as `check_relax`, RunError as `run`.
   RunResult relax(const RelaxOptions& options = {});
   /// What `run` does before its first step. \throws InputError as `prepare`, for options out of range, and
   /// for steps too small ever to reach the end in the resolution of time (2^-53 of it).
@@ -143,7 +154,8 @@ class Simulation {
   /// for loads that set a body in a rigid motion that nothing holds: which body and which motions.
   void check_relax(const RelaxOptions& options = {});
   /// Calls `f(t)` at the start and after every `interval` seconds of simulated time (each step when 0) of
-  /// `run`.
+  /// `run`. Observers may add others, which see the same step. \throws InputError for an interval that is
+  /// negative or not finite.
   void observe(double interval, std::function<void(double t)> f);
 
   // State, in the user's order of particles.
@@ -182,7 +194,8 @@ class Simulation {
  private:
   friend class StressRecovery<D>;
   friend void write_vtkhdf<D>(const std::string&, const Simulation<D>&);
-  std::unique_ptr<SimulationImpl<D>> impl_;
+  SimulationImpl<D>& impl() const;
+  std::shared_ptr<SimulationImpl<D>> impl_;  // a loop that runs keeps it alive
 };
 
 /// Fields of the present state as VTKHDF (ParaView): displacement, velocity, the whole Cauchy stress (nine
