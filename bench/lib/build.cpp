@@ -143,6 +143,8 @@ void apply(Simulation<D>& simulation, const BoundarySpec& boundary, Bounds<D> bo
                     history_of(boundary));
   } else if (boundary.type == "body_force") {
     simulation.body_force(vec<D>(boundary.acceleration), history_of(boundary));
+  } else if (boundary.type == "periodic") {
+    simulation.periodic(boundary.axis, bounds.min[boundary.axis], bounds.max[boundary.axis]);
   } else {
     const int axis = axis_number(boundary.selection.on);
     simulation.symmetry_plane(axis,

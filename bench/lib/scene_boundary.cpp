@@ -49,6 +49,10 @@ BoundarySpec read_boundary(const Node& node, const SceneContext& context) {
     boundary.selection.on = reader.choice("on", context.faces());
     return boundary;
   }
+  if (boundary.type == "periodic") {
+    boundary.axis = axis_number(reader.choice("axis", context.axes()));
+    return boundary;
+  }
   if (reader.has("history")) boundary.history = read_history(reader.require("history"));
   if (boundary.type == "body_force") {
     boundary.acceleration = reader.vector("acceleration", context.dimension);

@@ -27,6 +27,7 @@ const std::vector<SceneTable>& scene_tables() {
       {"boundary", "load", {"on", "where", "force", "direction", "history"}},
       {"boundary", "body_force", {"acceleration", "history"}},
       {"boundary", "symmetry", {"on"}},
+      {"boundary", "periodic", {"axis"}},
       {"history", "", {"type"}},
       {"history", "constant", {"start"}},
       {"history", "linear", {"start", "duration"}},

@@ -1,7 +1,8 @@
 #pragma once
 /// \file
-/// The dense-matrix algorithm of Kistner (2010, algorithm 5.2), header only: tests compare the engine with
-/// it, taut-scaling their run times.
+/// The dense-matrix algorithm 5.2 of a thesis (University of Cape Town; E. B. Ismail and B. D. Reddy,
+/// "Smoothed particle hydrodynamics for nonlinear solid mechanics", is bound into it), header only: tests
+/// compare the engine with it, taut-scaling their run times.
 
 #include <Eigen/Dense>
 #include <array>

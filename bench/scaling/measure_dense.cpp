@@ -77,7 +77,7 @@ void compare_with_dense(const Job& job, std::int64_t particles, double support_d
 void measure_dense(const Job& job) {
   constexpr std::int64_t most = 3969;  // matrices of 126 MB each
   if (job.quick) return compare_with_dense<2>(job, most, 2.6);
-  // Radii of Kistner's plates, and the smallest one in 3D.
+  // Radii of the plates of the thesis (University of Cape Town), and the smallest one in 3D.
   for (const std::int64_t n : std::initializer_list<std::int64_t>{16, 64, 256, 1024, 2500, most})
     compare_with_dense<2>(job, n, 2.6);
   for (const std::int64_t n : {27, 125, 512, 1728, 3375}) compare_with_dense<3>(job, n, 1.5);

@@ -137,7 +137,9 @@ SummaryTable growth_table(const std::vector<Row>& rows) {
 SummaryTable dense_table(const std::vector<Row>& rows) {
   SummaryTable t{
       "Dense matrices",
-      "The algorithm of Kistner (2010): every sum over pairs is a product with a full matrix. The same "
+      "The dense-matrix algorithm of the University of Cape Town thesis behind E. B. Ismail and B. D. Reddy, "
+      "\"Smoothed particle hydrodynamics for nonlinear solid mechanics\": every sum over pairs is a product "
+      "with a full matrix. The same "
       "operator "
       "(`standard`) in both; accelerations agree to 1e-10 (checked in the run).",
       {"dimensions", "particles", "taut [M/s]", "dense [M/s]", "ratio", "dense matrices [B/particle]"},

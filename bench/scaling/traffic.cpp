@@ -19,7 +19,7 @@ constexpr double integrator_flops = 4 * D;
 template <int D>
 Particles<D> particles_of(const Cloud<D>& cloud, const char* material, double reach) {
   return assemble<D>(cloud, {make_material<D>(material, step_parameters())},
-                     std::vector<std::uint8_t>(cloud.size(), 0), {}, reach);
+                     std::vector<std::uint8_t>(cloud.size(), 0), {{}, {}, reach});
 }
 
 template <int D>

@@ -18,23 +18,27 @@ VerletList<D>::VerletList(double radius, double skin, SearchOptions options)
 }
 
 template <int D>
-bool VerletList<D>::update(PointView<D> x) {
-  if (builds_ && x.n == pairs_.particles()) {
-    double largest = 0;
-    bool finite = true;
+bool VerletList<D>::due(PointView<D> x) {
+  if (builds_ == 0 || x.n != pairs_.particles()) return true;
+  double largest = 0;
+  bool finite = true;
 #pragma omp parallel for schedule(static) reduction(max : largest) reduction(&& : finite) if (worth_threads(x.n))
-    for (Index i = 0; i < x.n; ++i) {
-      double d2 = 0;
-      for (int d = 0; d < D; ++d) {
-        const double u = x.x[d][i] - built_at_.component(d)[i];
-        d2 += u * u;
-      }
-      finite = finite && std::isfinite(d2);
-      largest = std::max(largest, d2);
+  for (Index i = 0; i < x.n; ++i) {
+    double d2 = 0;
+    for (int d = 0; d < D; ++d) {
+      const double u = x.x[d][i] - built_at_.component(d)[i];
+      d2 += u * u;
     }
-    displacement_ = std::sqrt(largest);
-    if (finite && displacement_ <= skin_ * radius_ / 2) return false;
+    finite = finite && std::isfinite(d2);
+    largest = std::max(largest, d2);
   }
+  displacement_ = std::sqrt(largest);
+  return !(finite && displacement_ <= skin_ * radius_ / 2);
+}
+
+template <int D>
+bool VerletList<D>::update(PointView<D> x) {
+  if (!due(x)) return false;
   pairs_ = find_pairs(x, reach(), options_);
   if (built_at_.empty() || built_at_.particles() != static_cast<std::size_t>(x.n))
     built_at_ = Field(static_cast<std::size_t>(x.n), D);

@@ -51,7 +51,7 @@ TEST_CASE("loads divide by the mass, follow their histories and the ramp") {
 
 TEST_CASE("mirror images stand where two planes put them, corner included") {
   const std::vector<Vec<2>> points = {{0, 0}, {1, 0}, {1, 2}, {5, 5}};
-  const MirrorMap<2> mirror({{0, 0.0, 0}, {1, 0.0, 0}}, points, 3.0, 1e-9);
+  const MirrorMap<2> mirror({{0, 0.0, 0}, {1, 0.0, 0}}, {}, points, 3.0, 1e-9);
   // (1,0): across x. (1,2): across x, across y, across both. The point on both planes and the far one have
   // none.
   REQUIRE(mirror.size() == 4);
@@ -86,7 +86,7 @@ TEST_CASE("mirror images stand where two planes put them, corner included") {
 
 TEST_CASE("a plane away from the origin reflects about itself") {
   const std::vector<Vec<1>> points = {Vec<1>(0.7)};
-  const MirrorMap<1> mirror({{0, 1.0, 1}}, points, 0.5, 1e-9);
+  const MirrorMap<1> mirror({{0, 1.0, 1}}, {}, points, 0.5, 1e-9);
   REQUIRE(mirror.size() == 1);
   CHECK(mirror.image(0, points[0])[0] == doctest::Approx(1.3));
 }

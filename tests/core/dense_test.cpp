@@ -1,5 +1,5 @@
-// The dense-matrix algorithm of Kistner (2010, algorithm 5.2) against the engine with the `standard`
-// operator.
+// The dense-matrix algorithm 5.2 of the Cape Town thesis (dense_steps.hpp) against the engine with the
+// `standard` operator.
 #include <doctest/doctest.h>
 
 #include <cmath>

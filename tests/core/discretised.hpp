@@ -46,7 +46,7 @@ struct Discretised {
     const double support = method.support_dx * cloud.dx;
     const std::shared_ptr<const Material<D>> material =
         make_material<D>("linear_elastic", {.E = 1, .nu = 0, .density = 1});
-    particles = assemble<D>(cloud, {material}, std::vector<std::uint8_t>(cloud.size(), 0), {}, support);
+    particles = assemble<D>(cloud, {material}, std::vector<std::uint8_t>(cloud.size(), 0), {{}, {}, support});
     pairs = find_pairs<D>(points_of<D>(particles.X, particles.total), support);
     op = make_operator<D>(method, particles, pairs, kernel, support / kernel.radius_factor());
   }
@@ -143,7 +143,7 @@ struct Bare {
        const std::vector<std::uint8_t>& material_of, Method m,
        const std::vector<typename MirrorMap<D>::Plane>& planes = {})
       : method(with_defaults(std::move(m))),
-        particles(assemble<D>(cloud, materials, material_of, planes, method.support_dx * cloud.dx)),
+        particles(assemble<D>(cloud, materials, material_of, {planes, {}, method.support_dx * cloud.dx})),
         formulation(make_formulation<D>({particles, constraints, loads, method})) {}
   Bare(const Bare&) = delete;
   Bare& operator=(const Bare&) = delete;

@@ -47,8 +47,8 @@ struct LaidOpen {
       : method(with_defaults({.formulation = form.name, .support_dx = form.support_dx})),
         material(make_material<2>(form.material, jelly)) {
     const Cloud<2> cloud = two_squares();
-    p = assemble<2>(cloud, {material}, std::vector<std::uint8_t>(cloud.size(), 0), {},
-                    form.support_dx * cloud.dx * 1.1);
+    p = assemble<2>(cloud, {material}, std::vector<std::uint8_t>(cloud.size(), 0),
+                    {{}, {}, form.support_dx * cloud.dx * 1.1});
     formulation = make_formulation<2>({p, constraints, loads, method});
   }
   std::string judged() {

@@ -1,5 +1,5 @@
-// Orders of the discrete gradients (Kistner 2010, section 2.7): in the interior and on the boundary, by
-// refinement at a fixed ratio of support to spacing.
+// Orders of the discrete gradients (thesis, University of Cape Town, section 2.7): in the interior and on the
+// boundary, by refinement at a fixed ratio of support to spacing.
 #include <doctest/doctest.h>
 
 #include <numbers>
@@ -50,7 +50,7 @@ struct Function {
   double (*slope)(double);
 };
 
-// Kistner's two functions.
+// The two functions of the thesis.
 const Function functions[] = {
     {"(x - 1/2)^4", 0, 1, [](double x) { return std::pow(x - 0.5, 4); },
      [](double x) { return 4 * std::pow(x - 0.5, 3); }},
@@ -87,8 +87,8 @@ Method method_of(const char* operators, const char* kernel, double support_dx) {
 }  // namespace
 
 TEST_CASE("operator orders: standard is of order 2 in the interior, until its quadrature error shows") {
-  // Kistner's choice, a cover of 5.5 spacings. The second part of his error, (dx / h)^2 in eq. 2.35, does not
-  // fall with dx at a fixed cover; the modified mollifier's is below 1e-4 here.
+  // The choice of the thesis, a cover of 5.5 spacings. The second part of its error, (dx / h)^2 in eq. 2.35,
+  // does not fall with dx at a fixed cover; the modified mollifier's is below 1e-4 here.
   const auto method = method_of("standard", "modified_mollifier", 5.5);
   for (const auto& function : functions) {
     CAPTURE(function.name);

@@ -54,7 +54,7 @@ struct Body {
     if (setting.mirror) planes.push_back({0, 0.0, 0});
     const double reach = setting.support_dx * cloud.dx;
     p = assemble<D>(cloud, {make_material<D>("neo_hookean", {.E = 1e6, .nu = 0.3, .density = 1000})},
-                    std::vector<std::uint8_t>(cloud.size(), 0), planes, reach);
+                    std::vector<std::uint8_t>(cloud.size(), 0), {planes, {}, reach});
     form = make_formulation<D>({p, constraints, loads, method});
     for (Index i = 0; i < p.n; ++i) {
       const Vec<D> X = p.X.template vec<D>(i);

@@ -1,6 +1,6 @@
-// Elastic waves in a bar of one-dimensional strain (Kistner 2010, sections 4.6 and 5.3.1): a pulse of
-// compression from x = 0, probes at x = 0.05 and 0.10, its speed, its reflections, and what passes a change
-// of density at mid-span.
+// Elastic waves in a bar of one-dimensional strain (thesis, University of Cape Town, sections 4.6 and 5.3.1):
+// a pulse of compression from x = 0, probes at x = 0.05 and 0.10, its speed, its reflections, and what passes
+// a change of density at mid-span.
 //
 // At R = 1.5 dx the even and the odd particles of a bar hardly know of each other; 46 mm of pulse over 93
 // particles keep what that does below 0.5 %. Wider supports hear more of the modes that the gradient does not

@@ -1,11 +1,11 @@
-// A neo-Hookean bar drawn from 15 to 90 mm (Kistner 2010, sections 5.3.2 and 5.4.3): Cauchy stress of the
-// particle in the middle against the exact one of the stretches imposed on the boundary, T = mu / J (l1^2 -
-// 1) + lambda / J ln J (his eq. 5.4-5.5).
+// A neo-Hookean bar drawn from 15 to 90 mm (thesis, University of Cape Town, sections 5.3.2 and 5.4.3):
+// Cauchy stress of the particle in the middle against the exact one of the stretches imposed on the boundary,
+// T = mu / J (l1^2 - 1) + lambda / J ln J (eq. 5.4-5.5 there).
 //
 // At nu = 0.49 the material itself gives way: the acoustic tensor of P = mu (F - F^-T) + lambda ln J F^-T has
 // the eigenvalue mu + (mu + lambda (1 - ln J)) max(l1, l2)^2 / J^2, which turns negative at a volume ratio
 // near 2.85. Along the bar, for l2 = 1, that is dP/dF = mu (1 + 1/F^2) + lambda (1 - ln F) / F^2 < 0 from F
-// = 3.63 to 6.40, which is where Kistner saw an instability and blamed the time integration. In 2D the
+// = 3.63 to 6.40, which is where the thesis saw an instability and blamed the time integration. In 2D the
 // transverse direction goes first, at l1 = 2.83. No discretisation follows the uniform state beyond; the
 // tests compare up to there, and ask that the rest completes.
 #include <doctest/doctest.h>

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <taut/base/disjoint_sets.hpp>
 #include <taut/base/error.hpp>
 #include <taut/formulations/assembly.hpp>
 #include <taut/neighbors/search.hpp>
@@ -86,6 +87,88 @@ void split(const Interfaces<D>& interfaces, const std::vector<std::uint8_t>& mat
   }
 }
 
+// The body fits its period: it lies in it, and does not fill both of its ends.
+template <int D>
+void check_period(const Cloud<D>& cloud, const typename MirrorMap<D>::Period& period) {
+  const double tolerance = on_plane * cloud.dx, origin = cloud.origin[period.axis];
+  bool low = false, high = false;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const double in = cloud.X[i][period.axis] - period.low;
+    if (in < -tolerance || in > period.length + tolerance)
+      throw InputError(
+          fmt::format("the period from {:g} to {:g} along {} does not hold the body: particle {} "
+                      "lies outside at {:g}",
+                      origin + period.low, origin + period.low + period.length, "xyz"[period.axis], i,
+                      origin + cloud.X[i][period.axis]));
+    low = low || in <= tolerance;
+    high = high || in >= period.length - tolerance;
+  }
+  if (low && high && cloud.cells.empty())
+    throw InputError(fmt::format(
+        "particles lie on both ends of the period from {:g} to {:g} along {}, which are one place: leave one "
+        "end out, as cell-centred lattices do (Lattice::cell_centred), or use a formulation on cells",
+        origin + period.low, origin + period.low + period.length, "xyz"[period.axis]));
+}
+
+// Ties the nodes at the ends of periods to those that they are the same as.
+template <int D>
+void tie_ends(const Cloud<D>& cloud, const std::vector<typename MirrorMap<D>::Period>& periods,
+              Particles<D>& p) {
+  if (periods.empty()) return;
+  const double tolerance = on_plane * cloud.dx;
+  DisjointSets sets(p.n);
+  std::vector<std::uint8_t> tied(static_cast<std::size_t>(p.n), 0);
+  for (const auto& period : periods) {
+    const int along = D == 1 ? 0 : (period.axis + 1) % D;  // an axis to sort by
+    std::vector<Index> low, high;
+    for (Index i = 0; i < p.n; ++i) {
+      const double in = p.X.component(period.axis)[i] - period.low;
+      if (in <= tolerance) low.push_back(i);
+      if (in >= period.length - tolerance) high.push_back(i);
+    }
+    const double* x = p.X.component(along);
+    std::sort(low.begin(), low.end(), [&](Index a, Index b) { return x[a] < x[b]; });
+    for (const Index i : high) {
+      Vec<D> at = p.X.template vec<D>(i);
+      at[period.axis] -= period.length;
+      auto other = std::lower_bound(low.begin(), low.end(), at[along] - tolerance,
+                                    [&](Index a, double value) { return x[a] < value; });
+      while (other != low.end() && (p.X.template vec<D>(*other) - at).norm() > 2 * tolerance) ++other;
+      if (other == low.end())
+        throw InputError(
+            fmt::format("particle {} on the end of the period along {} has no fellow on the other end",
+                        p.id[static_cast<std::size_t>(i)], "xyz"[period.axis]));
+      sets.join(i, *other);
+      tied[static_cast<std::size_t>(i)] = tied[static_cast<std::size_t>(*other)] = 1;
+    }
+  }
+  std::vector<std::vector<Index>> groups;
+  const std::vector<Index> number = sets.numbers();
+  std::vector<Index> group(static_cast<std::size_t>(p.n), no_particle);
+  for (Index i = 0; i < p.n; ++i) {
+    if (!tied[static_cast<std::size_t>(i)]) continue;
+    Index& g = group[static_cast<std::size_t>(number[static_cast<std::size_t>(i)])];
+    if (g == no_particle) {
+      g = static_cast<Index>(groups.size());
+      groups.emplace_back();
+    }
+    groups[static_cast<std::size_t>(g)].push_back(i);
+  }
+  p.ties.begin.push_back(0);
+  for (const auto& of_one : groups) {
+    p.ties.particles.insert(p.ties.particles.end(), of_one.begin(), of_one.end());
+    p.ties.begin.push_back(p.ties.particles.size());
+  }
+}
+
+// More images than there are now that particles may have when they have moved.
+template <int D>
+Index room_for_images(const Particles<D>& p, double reach) {
+  if (!p.mirror.possible()) return 0;
+  const double layer = std::pow(static_cast<double>(p.n), (D - 1.0) / D) * (1 + std::ceil(reach / p.dx));
+  return p.mirror.size() + static_cast<Index>(8 * layer) + 64;
+}
+
 }  // namespace
 
 template <int D>
@@ -100,9 +183,10 @@ std::vector<double> multiplicity(const Cloud<D>& cloud,
 
 template <int D>
 Particles<D> assemble(const Cloud<D>& cloud, std::vector<std::shared_ptr<const Material<D>>> materials,
-                      const std::vector<std::uint8_t>& material,
-                      const std::vector<typename MirrorMap<D>::Plane>& planes, double reach,
+                      const std::vector<std::uint8_t>& material, const Surroundings<D>& around,
                       const Interfaces<D>* interfaces, bool twins) {
+  const auto& planes = around.planes;
+  const double reach = around.reach;
   std::size_t n = cloud.size();
   if (n == 0) throw InputError("the body has no particles");
   for (const auto& plane : planes)
@@ -112,6 +196,7 @@ Particles<D> assemble(const Cloud<D>& cloud, std::vector<std::shared_ptr<const M
         throw InputError(fmt::format("the symmetry plane {} = {:g} cuts the body: particle {} lies beyond it",
                                      "xyz"[plane.axis], cloud.origin[plane.axis] + plane.at, i));
     }
+  for (const auto& period : around.periods) check_period(cloud, period);
 
   Particles<D> p;
   p.n = static_cast<Index>(n);
@@ -139,10 +224,13 @@ Particles<D> assemble(const Cloud<D>& cloud, std::vector<std::shared_ptr<const M
   }
   std::vector<Vec<D>> ordered(n);
   for (std::size_t i = 0; i < n; ++i) ordered[i] = cloud.X[static_cast<std::size_t>(p.id[i])];
-  if (!planes.empty()) p.mirror = MirrorMap<D>(planes, ordered, reach, on_plane * cloud.dx);
+  // Cells need no images: their nodes at both ends of a period are tied.
+  const auto periods = cloud.cells.empty() ? around.periods : std::vector<typename MirrorMap<D>::Period>{};
+  if (!planes.empty() || !periods.empty())
+    p.mirror = MirrorMap<D>(planes, periods, ordered, reach, on_plane * cloud.dx);
   p.total = p.n + p.mirror.size();
 
-  const auto total = static_cast<std::size_t>(p.total);
+  const auto total = static_cast<std::size_t>(p.total + (around.follow ? room_for_images(p, reach) : 0));
   p.X = Field(total, D);
   p.u = p.v = p.a = p.m_flat = Field(total, D);
   p.V = p.m = Field(total, 1);
@@ -185,7 +273,10 @@ Particles<D> assemble(const Cloud<D>& cloud, std::vector<std::shared_ptr<const M
     for (int d = 0; d < D; ++d)
       if (!planes.empty() && (p.planes[i] >> d & 1)) p.B[i][d] = 0;
   }
-  if (!cloud.cells.empty()) take_cells(cloud, planes, p);
+  if (!cloud.cells.empty()) {
+    take_cells(cloud, planes, p);
+    tie_ends(cloud, around.periods, p);
+  }
   if (interfaces && interfaces->cells().size() == p.cells.size())
     p.cell_material = interfaces->cell_material();
   p.mirror.positions(p.X);
@@ -229,12 +320,12 @@ PairList find_pairs_at_rest(const Particles<D>& p, const Method& method) {
   return pairs;
 }
 
-#define TAUT_INSTANTIATE(D)                                                                               \
-  template std::vector<double> multiplicity<D>(const Cloud<D>&,                                           \
-                                               const std::vector<typename MirrorMap<D>::Plane>&);         \
-  template Particles<D> assemble<D>(                                                                      \
-      const Cloud<D>&, std::vector<std::shared_ptr<const Material<D>>>, const std::vector<std::uint8_t>&, \
-      const std::vector<typename MirrorMap<D>::Plane>&, double, const Interfaces<D>*, bool);              \
+#define TAUT_INSTANTIATE(D)                                                                           \
+  template std::vector<double> multiplicity<D>(const Cloud<D>&,                                       \
+                                               const std::vector<typename MirrorMap<D>::Plane>&);     \
+  template Particles<D> assemble<D>(const Cloud<D>&, std::vector<std::shared_ptr<const Material<D>>>, \
+                                    const std::vector<std::uint8_t>&, const Surroundings<D>&,         \
+                                    const Interfaces<D>*, bool);                                      \
   template PairList find_pairs_at_rest<D>(const Particles<D>&, const Method&);
 TAUT_INSTANTIATE(1)
 TAUT_INSTANTIATE(2)

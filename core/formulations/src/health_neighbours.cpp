@@ -2,31 +2,42 @@
 #include <array>
 #include <cmath>
 #include <taut/formulations/health_sweeps.hpp>
+#include <taut/operators/pair_passes.hpp>
+#include <taut/particles/material_groups.hpp>
 
 namespace taut {
 
 template <int D>
-std::vector<bool> on_surface(const Particles<D>& p, const PairList& pairs) {
+std::vector<std::uint8_t> on_surface(const Particles<D>& p, const PairList& pairs) {
   constexpr double lopsided = 0.3;
-  std::vector<bool> surface(static_cast<std::size_t>(p.n), false);
-  for (Index a = 0; a < p.n; ++a) {
-    const auto i = static_cast<std::size_t>(a);
+  const Index slices = (p.n + lanes - 1) / lanes;
+  std::vector<std::uint8_t> surface(static_cast<std::size_t>(slices) * lanes, 0);
+  const Columns<D> X(p.X);
+#pragma omp parallel for schedule(static) if (p.n > parallel_from)
+  for (Index s = 0; s < slices; ++s) {
+    const Index i = s * lanes;
     if (!p.B.empty()) {
-      surface[i] = !p.B[i].isZero();
+      for (Index a = i; a < std::min(p.n, i + lanes); ++a)
+        surface[static_cast<std::size_t>(a)] = !p.B[static_cast<std::size_t>(a)].isZero();
       continue;
     }
-    Vec<D> sum = Vec<D>::Zero();
-    double squares = 0;
-    int count = 0;
-    const Vec<D> X = p.X.template vec<D>(i);
-    pairs.for_each(a, [&](Index b, std::int64_t, int) {
-      const Vec<D> X_ab = p.X.template vec<D>(static_cast<std::size_t>(b)) - X;
-      sum += X_ab;
-      squares += X_ab.squaredNorm();
-      ++count;
+    Pack Xi[D], sum[D], squares = pack(0), count = pack(0), length = pack(0);
+    for (int d = 0; d < D; ++d) Xi[d] = load(X.c[d] + i), sum[d] = pack(0);
+    for_slots(pairs, s, [&](std::int64_t k, auto&& at) TAUT_INLINE_LAMBDA {
+      const PackMask pair = lanes_of(pairs.mask(k));
+      for (int d = 0; d < D; ++d) {
+        const Pack Xab = pair ? at(X.c[d]) - Xi[d] : pack(0);
+        sum[d] += Xab;
+        squares += Xab * Xab;
+      }
+      count += pair ? pack(1) : pack(0);
     });
-    surface[i] = count == 0 || sum.squaredNorm() > lopsided * lopsided * squares * count;
+    for (int d = 0; d < D; ++d) length += sum[d] * sum[d];
+    for (int l = 0; l < lanes; ++l)
+      surface[static_cast<std::size_t>(i + l)] =
+          !(count[l] > 0) || length[l] > lopsided * lopsided * squares[l] * count[l];
   }
+  surface.resize(static_cast<std::size_t>(p.n));
   return surface;
 }
 
@@ -36,7 +47,7 @@ namespace {
 /// there.
 template <int D>
 std::pair<int, Index> thinnest(const Particles<D>& p, const PairList& pairs,
-                               const std::vector<bool>& surface) {
+                               const std::vector<std::uint8_t>& surface) {
   constexpr int deep = 4;  // further in, a body is thick
   std::vector<int> depth(surface.size(), deep);
   std::vector<Index> order;
@@ -79,7 +90,7 @@ HealthMeasure measure_at(const Particles<D>& p, std::string name, double value, 
 }
 
 template <int D>
-void add_spurious_forces(const Particles<D>& p, const std::vector<bool>& surface, const Field& force,
+void add_spurious_forces(const Particles<D>& p, const std::vector<std::uint8_t>& surface, const Field& force,
                          double limit_inside, double limit_faces, Health& health) {
   const double face = std::pow(p.dx, D - 1);
   double inside = 0, faces = 0, areas = 0, worst = -1, worst_face = -1;
@@ -111,8 +122,8 @@ void add_spurious_forces(const Particles<D>& p, const std::vector<bool>& surface
 }
 
 template <int D>
-void add_neighbourhoods(const Particles<D>& p, const PairList& pairs, const std::vector<bool>& surface,
-                        Health& health) {
+void add_neighbourhoods(const Particles<D>& p, const PairList& pairs,
+                        const std::vector<std::uint8_t>& surface, Health& health) {
   Index fewest = std::numeric_limits<Index>::max(), at = no_particle;
   for (Index s = 0; s * lanes < p.n; ++s) {
     std::array<Index, lanes> count{};
@@ -138,11 +149,11 @@ void add_neighbourhoods(const Particles<D>& p, const PairList& pairs, const std:
 #define TAUT_INSTANTIATE(D)                                                                                 \
   template HealthMeasure measure_at<D>(const Particles<D>&, std::string, double, double, std::string,       \
                                        Index);                                                              \
-  template std::vector<bool> on_surface<D>(const Particles<D>&, const PairList&);                           \
-  template void add_spurious_forces<D>(const Particles<D>&, const std::vector<bool>&, const Field&, double, \
-                                       double, Health&);                                                    \
-  template void add_neighbourhoods<D>(const Particles<D>&, const PairList&, const std::vector<bool>&,       \
-                                      Health&);
+  template std::vector<std::uint8_t> on_surface<D>(const Particles<D>&, const PairList&);                   \
+  template void add_spurious_forces<D>(const Particles<D>&, const std::vector<std::uint8_t>&, const Field&, \
+                                       double, double, Health&);                                            \
+  template void add_neighbourhoods<D>(const Particles<D>&, const PairList&,                                 \
+                                      const std::vector<std::uint8_t>&, Health&);
 TAUT_INSTANTIATE(1)
 TAUT_INSTANTIATE(2)
 TAUT_INSTANTIATE(3)

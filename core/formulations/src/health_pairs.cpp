@@ -71,7 +71,7 @@ void check_pair_operator(const Particles<D>& p, const PairList& pairs, const Pai
       static_cast<Index>(std::max_element(error.component(0), error.component(0) + p.n) - error.component(0));
   health.measures.push_back(measure_at(p, "health_linear_field_error", std::sqrt(error.component(0)[worst]),
                                        1e-3, "largest error of the gradient of a linear field", worst));
-  const std::vector<bool> surface = on_surface(p, pairs);
+  const std::vector<std::uint8_t> surface = on_surface(p, pairs);
   add_spurious_forces(p, surface, force, 0.05, 0.1, health);
   add_neighbourhoods(p, pairs, surface, health);
 }

@@ -1,7 +1,9 @@
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <taut/formulations/health_sweeps.hpp>
+#include <taut/operators/pair_passes.hpp>
+#include <taut/particles/material_groups.hpp>
 
 namespace taut {
 
@@ -9,17 +11,26 @@ template <int D>
 void check_updated_operator(const Particles<D>& p, const PairList& pairs, const KernelTable& table,
                             Health& health) {
   Field force(static_cast<std::size_t>(p.n), D);
-  for (Index a = 0; a < p.n; ++a) {
-    Vec<D> sum = Vec<D>::Zero();
-    const Vec<D> X = p.X.template vec<D>(static_cast<std::size_t>(a));
-    pairs.for_each(a, [&](Index b, std::int64_t, int) {
-      const Vec<D> X_ab = p.X.template vec<D>(static_cast<std::size_t>(b)) - X;
-      sum -= 2 * p.V.component(0)[a] * p.V.component(0)[b] * table.slope_over_r(pack(X_ab.squaredNorm()))[0] *
-             X_ab;
+  const Columns<D> X(p.X);
+  const double* volume = p.V.component(0);
+  const Index slices = (p.n + lanes - 1) / lanes;
+#pragma omp parallel for schedule(static) if (p.n > parallel_from)
+  for (Index s = 0; s < slices; ++s) {
+    const Index i = s * lanes;
+    Pack Xi[D], sum[D];
+    for (int d = 0; d < D; ++d) Xi[d] = load(X.c[d] + i), sum[d] = pack(0);
+    for_slots(pairs, s, [&](std::int64_t k, auto&& at) TAUT_INLINE_LAMBDA {
+      Pack Xab[D], r2 = pack(0);
+      for (int d = 0; d < D; ++d) {
+        Xab[d] = at(X.c[d]) - Xi[d];
+        r2 += Xab[d] * Xab[d];
+      }
+      const Pack weight = lanes_of(pairs.mask(k)) ? 2 * at(volume) * table.slope_over_r(r2) : pack(0);
+      for (int d = 0; d < D; ++d) sum[d] -= weight * Xab[d];
     });
-    force.template set_vec<D>(static_cast<std::size_t>(a), sum);
+    for (int d = 0; d < D; ++d) store(force.component(d) + i, load(volume + i) * sum[d]);
   }
-  const std::vector<bool> surface = on_surface(p, pairs);
+  const std::vector<std::uint8_t> surface = on_surface(p, pairs);
   // None of these forms closes, free bodies move rightly for all that: told, but no reason to be flagged.
   add_spurious_forces(p, surface, force, told_only, told_only, health);
   add_neighbourhoods(p, pairs, surface, health);
@@ -32,10 +43,11 @@ MotionSample updated_motion(const Particles<D>& p, const std::vector<std::array<
   const auto n = static_cast<std::size_t>(p.n);
   const auto X = [&](Index i) { return p.X.template vec<D>(static_cast<std::size_t>(i)); };
   const auto x = [&](Index i) { return Vec<D>(X(i) + p.u.template vec<D>(static_cast<std::size_t>(i))); };
+  const auto apart = [&](const Vec<D>& from, const Vec<D>& to) { return p.mirror.nearest(to - from); };
   // F by least squares over what touched: these forms keep none.
   std::vector<Mat<D>> moment(n, Mat<D>::Zero()), F(n, Mat<D>::Zero());
   for (const auto& [a, b] : touching) {
-    const Vec<D> X_ab = X(b) - X(a), x_ab = x(b) - x(a);
+    const Vec<D> X_ab = apart(X(a), X(b)), x_ab = apart(x(a), x(b));
     for (const Index i : {a, b}) {
       moment[static_cast<std::size_t>(i)] += X_ab * X_ab.transpose();
       F[static_cast<std::size_t>(i)] += x_ab * X_ab.transpose();
@@ -59,7 +71,7 @@ MotionSample updated_motion(const Particles<D>& p, const std::vector<std::array<
   std::vector<int> count(n, 0);
   double widest = 0;
   for (const auto& [a, b] : touching) {
-    const Vec<D> X_ab = X(b) - X(a), x_ab = x(b) - x(a);
+    const Vec<D> X_ab = apart(X(a), X(b)), x_ab = apart(x(a), x(b));
     for (const Index i : {a, b}) {
       const auto k = static_cast<std::size_t>(i);
       if (!has[k]) continue;

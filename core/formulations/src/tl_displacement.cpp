@@ -12,8 +12,8 @@ namespace taut {
 
 namespace {
 
-/// Displacement-based total Lagrangian form (Kistner 2010 ch. 5; Tran-Duc et al. 2023, 2.3): F from
-/// displacements, P from the material, forces by the adjoint of the gradient.
+/// Displacement-based total Lagrangian form (thesis, University of Cape Town, ch. 5; Tran-Duc et al.
+/// 2023, 2.3): F from displacements, P from the material, forces by the adjoint of the gradient.
 template <int D>
 class TlDisplacement final : public TotalLagrangian<D> {
   using Base = TotalLagrangian<D>;

@@ -38,8 +38,7 @@ class UlArtificialStress final : public UpdatedLagrangian<D> {
   static constexpr int S = Base::S;
 
  public:
-  explicit UlArtificialStress(const FormulationSetup<D>& setup)
-      : Base(setup), R_(static_cast<std::size_t>(p_.total), S) {
+  explicit UlArtificialStress(const FormulationSetup<D>& setup) : Base(setup), R_(p_.X.particles(), S) {
     const Method& m = setup.method;
     if (!(m.artificial_stress >= 0))
       throw InputError(fmt::format("artificial_stress = {} must not be negative", m.artificial_stress));

@@ -5,8 +5,8 @@ namespace taut {
 
 namespace {
 
-/// Plain updated Lagrangian SPH (S1 CCB-SPH): fails in tension (Swegle, Hicks & Attaway 1995), which is why
-/// it is here.
+/// Plain updated Lagrangian SPH (Tran-Duc et al. 2023, there CCB-SPH): fails in tension (Swegle, Hicks &
+/// Attaway 1995), which is why it is here.
 template <int D>
 class UlBasic final : public UpdatedLagrangian<D> {
  public:

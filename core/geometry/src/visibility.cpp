@@ -53,8 +53,10 @@ bool Visibility<D>::has(Cell cell, std::uint8_t label) const {
       const Index border = plane.at / 2;
       if (plane.side == 0 ? c < border : c >= border) c = plane.at - 1 - c;
     }
-  for (std::size_t d = 0; d < D; ++d)
+  for (std::size_t d = 0; d < D; ++d) {
+    if (periodic_[d]) cell[d] = (cell[d] % size_[d] + size_[d]) % size_[d];
     if (cell[d] < 0 || cell[d] >= size_[d]) return false;
+  }
   const std::uint8_t own = label_[number(cell)];
   return label == any ? own != nothing : own == label;
 }

@@ -71,6 +71,7 @@ std::shared_ptr<const PairRule<D>> PairRule<D>::make(const Cloud<D>& cloud, cons
   const LatticeFrame<D> frame{cloud.X[0], lattice->spacing, lattice->site(0)};
   for (const auto& plane : planes)
     rule->visibility_->add_plane(plane.axis, frame.at(plane.axis, plane.at), plane.side);
+  for (const auto& period : p.mirror.periods()) rule->visibility_->add_period(period.axis);
   rule->sites_.resize(total);
   for (std::size_t i = 0; i < n; ++i) rule->sites_[i] = lattice->site(static_cast<std::size_t>(p.id[i]));
   // Reflections and shifts of places are those of sites.

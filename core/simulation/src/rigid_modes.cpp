@@ -49,8 +49,14 @@ class Body {
     return f;
   }
   // Component `axis` of the displacement of X is zero.
-  void hold(const Vec<D>& X, int axis) {
-    Motion row = field(X).row(axis).transpose();
+  void hold(const Vec<D>& X, int axis) { add_row(field(X).row(axis).transpose()); }
+  // The motion is the same at all places that are a period apart along the axis.
+  void hold_period(int axis) {
+    for (int d = 0; d < D; ++d)
+      add_row((field(Vec<D>(centre_ + size_ * Vec<D>::Unit(axis))) - field(centre_)).row(d).transpose());
+  }
+  // This combination of motions is zero.
+  void add_row(Motion row) {
     constrained_ = true;
     for (int k = 0; k < motions;
          ++k) {  // Givens rotations: what is left is the triangle of a QR factorisation
@@ -203,6 +209,7 @@ void require_held(const Support<D>& support) {
   });
   bool any = false;
   for (Body<D>& body : bodies) {
+    for (const auto& period : support.periods) body.hold_period(period.axis);
     for (const auto& plane : support.planes)  // bound to its image, or on the plane
       if (2 * body.depth(plane.axis, plane.at) < support.reach) body.hold_plane(plane.axis, plane.at);
     body.find_free();

@@ -325,6 +325,9 @@ void Simulation<D>::symmetry_plane(int axis, double at) {
     throw InputError(fmt::format("symmetry_plane: axis {} is not one of 0 … {}", axis, D - 1));
   if (!std::isfinite(at)) throw InputError(fmt::format("symmetry_plane: {:g} m is no place for a plane", at));
   const Cloud<D>& cloud = impl().cloud;
+  for (const auto& period : impl().periods)
+    if (period.axis == axis)
+      throw InputError(fmt::format("symmetry_plane: the axis {} is periodic", "xyz"[axis]));
   double local = coordinate_difference(at, cloud.origin[axis]), sum = 0;
   for (const Vec<D>& X : cloud.X) sum += X[axis] - local;
   // Particles that are on the plane but for the rounding of its coordinate are on the plane.
@@ -337,6 +340,21 @@ void Simulation<D>::symmetry_plane(int axis, double at) {
           "symmetry_plane: there is one across {} at {:g} m already, and a body has one image beyond it",
           "xyz"[axis], at));
   impl().planes.push_back({axis, local, sum > 0 ? 0 : 1});
+}
+
+template <int D>
+void Simulation<D>::periodic(int axis, double low, double high) {
+  impl().must_be_open("periodic");
+  if (axis < 0 || axis >= D)
+    throw InputError(fmt::format("periodic: axis {} is not one of 0 … {}", axis, D - 1));
+  if (!(high > low) || !std::isfinite(high - low))
+    throw InputError(fmt::format("periodic: the end {:g} must be above the beginning {:g}", high, low));
+  const auto same = [axis](const auto& other) { return other.axis == axis; };
+  if (std::any_of(impl().planes.begin(), impl().planes.end(), same) ||
+      std::any_of(impl().periods.begin(), impl().periods.end(), same))
+    throw InputError(
+        fmt::format("periodic: the axis {} has a symmetry plane or a period already", "xyz"[axis]));
+  impl().periods.push_back({axis, coordinate_difference(low, impl().cloud.origin[axis]), high - low});
 }
 
 template <int D>
@@ -367,9 +385,15 @@ void enclose(Cloud<D>& cloud) {
         100 * change));
 }
 
-// The body goes on across a symmetry plane: what ends there is no boundary.
+// The body goes on across a symmetry plane or the end of a period: what ends there is no boundary.
 template <int D>
-void open_facets_on(const std::vector<typename MirrorMap<D>::Plane>& planes, Cloud<D>& cloud) {
+void open_facets_on(const std::vector<typename MirrorMap<D>::Plane>& planes,
+                    const std::vector<typename MirrorMap<D>::Period>& periods, Cloud<D>& cloud) {
+  for (const auto& period : periods)
+    for (Facet<D>& f : cloud.facets) {
+      const double in = f.centre[period.axis] - period.low;
+      if (std::min(in, period.length - in) < 1e-6 * cloud.dx) f.area.setZero();
+    }
   for (const auto& plane : planes)
     for (Facet<D>& f : cloud.facets)
       if ((f.centre[plane.axis] - plane.at) * (plane.side == 0 ? -1 : 1) > -1e-6 * cloud.dx) f.area.setZero();
@@ -406,15 +430,17 @@ void build(SimulationImpl<D>& s) {
   const Interfaces<D>* interfaces = s.met();
   const MaterialsMeet meet = materials_meet(s.method.formulation);
   if (interfaces) interfaces->straighten(s.cloud);
-  if (needs_areas(s.method.operators) && s.planes.empty()) enclose(s.cloud);
-  open_facets_on<D>(s.planes, s.cloud);
+  if (needs_areas(s.method.operators) && s.planes.empty() && s.periods.empty()) enclose(s.cloud);
+  open_facets_on<D>(s.planes, s.periods, s.cloud);
   const double widest = s.cloud.spacing.empty()
                             ? s.cloud.dx
                             : *std::max_element(s.cloud.spacing.begin(), s.cloud.spacing.end());
   const double reach = s.method.support_dx * widest * (1 + s.method.skin);
   for (const auto& material : s.materials) check_wave_speed(*material);
   const bool twins = interfaces && meet == MaterialsMeet::in_twins;
-  s.particles = assemble<D>(s.cloud, s.materials, s.material, s.planes, reach, interfaces, twins);
+  s.particles =
+      assemble<D>(s.cloud, s.materials, s.material,
+                  {s.planes, s.periods, reach, meet == MaterialsMeet::in_particles}, interfaces, twins);
   // Areas that are guesses tell nothing. Forms that find their neighbours anew let bodies meet.
   if (meet != MaterialsMeet::in_particles && (areas_known || s.cloud.body))
     s.particles.rule = PairRule<D>::make(s.cloud, s.particles, s.planes, twins ? interfaces : nullptr, reach);
@@ -477,11 +503,8 @@ template <class Loop>
 RunResult SimulationImpl<D>::guarded(const char* what, Loop&& loop) {
   if (!lost.empty()) throw RunError(fmt::format("{}: {}", what, lost));
   const Busy now(busy, what);
-  before_steps.emplace(std::array<Field, 2>{particles.u, particles.v});
   try {
-    const RunResult result = loop();
-    before_steps.reset();
-    return result;
+    return loop();
   } catch (const std::exception& error) {
     recover(error.what());
     throw;
@@ -493,16 +516,11 @@ RunResult SimulationImpl<D>::guarded(const char* what, Loop&& loop) {
 
 template <int D>
 void SimulationImpl<D>::recover(const char* error) {
-  if (before_steps) {
-    std::copy((*before_steps)[0].flat().begin(), (*before_steps)[0].flat().end(), particles.u.flat().begin());
-    std::copy((*before_steps)[1].flat().begin(), (*before_steps)[1].flat().end(), particles.v.flat().begin());
-    before_steps.reset();
-  } else if (mid_step) {
+  if (mid_step)
     lost = fmt::format(
         "the simulation cannot go on: the step after t = {:g} s ended half way with an error ({}). Its state "
         "can be looked at; make another one to go on",
         time, error);
-  }
   mid_step = false;
 }
 
@@ -539,7 +557,7 @@ void Simulation<D>::check_relax(const RelaxOptions& options) {
   const SimulationImpl<D>& s = impl();
   if (s.formulation->failure() || s.loads.empty()) return;
   const std::vector<double> times = relaxation_times(s, options);
-  require_held<D>({s.particles, s.formulation->bodies(), s.constraints, s.loads, s.planes,
+  require_held<D>({s.particles, s.formulation->bodies(), s.constraints, s.loads, s.planes, s.periods,
                    s.method.support_dx * s.cloud.dx, times});
 }
 
@@ -640,41 +658,6 @@ double Simulation<D>::mass(std::size_t id) const {
   double mass = 0;
   for (const auto& part : interfaces->parts(id)) mass += part.V * impl().materials[part.material]->density();
   return mass;
-}
-
-template <int D>
-Vec<D> Simulation<D>::displacement_at(const Vec<D>& X) const {
-  // Nearest particles first, until a plane through them is well determined.
-  const double dx = impl().cloud.dx;
-  const Vec<D> at = coordinate_difference<D>(X, impl().cloud.origin);
-  std::vector<std::pair<double, std::size_t>> near;
-  for (std::size_t i = 0; i < size(); ++i) {
-    const double r2 = (impl().cloud.X[i] - at).squaredNorm();
-    if (r2 < 9 * dx * dx) near.emplace_back(r2, i);
-  }
-  std::sort(near.begin(), near.end());
-  if (near.empty()) throw InputError("displacement_at: no particle within three spacings of the point");
-  const double same = std::max(1e-6 * dx, coordinate_rounding(X.norm()));
-  if (near.front().first < same * same) return displacement(near.front().second);
-  // Not across slits.
-  if (const auto& rule = impl().particles.rule)
-    std::erase_if(near, [&, nearest = impl().place(near.front().second)](const auto& other) {
-      const Index i = impl().place(other.second);
-      return i != nearest && !rule->same_body(nearest, i);
-    });
-  Fixed<D + 1> normal = Fixed<D + 1>::Zero();
-  Fixed<D + 1, D> right = Fixed<D + 1, D>::Zero();
-  for (const auto& [r2, i] : near) {
-    const double q2 = r2 / (9 * dx * dx);
-    const double weight = (1 - q2) * (1 - q2) * (1 - q2) * (1 - q2) / (r2 / (dx * dx) + 0.05);
-    Fixed<D + 1, 1> basis;
-    basis << 1, (impl().cloud.X[i] - at) / dx;
-    normal += weight * basis * basis.transpose();
-    right += weight * basis * displacement(i).transpose();
-  }
-  const Eigen::FullPivLU<Fixed<D + 1>> lu(normal);
-  if (!lu.isInvertible()) return displacement(near.front().second);
-  return lu.solve(right).row(0).transpose();
 }
 
 template <int D>

@@ -10,13 +10,20 @@ namespace taut {
 
 namespace {
 
-// Constraints, rates and accelerations of the present time.
+// Constraints, rates and accelerations of the present time. Where something throws the state is as it was.
 template <int D>
 void start(SimulationImpl<D>& s) {
-  s.formulation->constrain_positions(s.time);
-  s.formulation->constrain_velocities(s.time);
-  if (!s.formulation->evolved().empty()) s.formulation->update_rates(s.time);
-  s.formulation->update_accelerations(s.time);
+  const Field u = s.particles.u, v = s.particles.v;
+  try {
+    s.formulation->constrain_positions(s.time);
+    s.formulation->constrain_velocities(s.time);
+    if (!s.formulation->evolved().empty()) s.formulation->update_rates(s.time);
+    s.formulation->update_accelerations(s.time);
+  } catch (...) {
+    std::copy(u.flat().begin(), u.flat().end(), s.particles.u.flat().begin());
+    std::copy(v.flat().begin(), v.flat().end(), s.particles.v.flat().begin());
+    throw;
+  }
 }
 
 /// What both loops do around a step: count, keep time, look for breakdowns.
@@ -205,6 +212,9 @@ RunResult integrate(SimulationImpl<D>& s, Integrator& integrator, double duratio
 template <int D>
 RunResult find_equilibrium(SimulationImpl<D>& s, const RelaxOptions& options) {
   const double start = s.time;
+  // Asked before anything changes, for histories may throw. Where nothing is applied and nothing will be,
+  // round-off must not be compared with round-off.
+  const bool left_alone = is_left_alone(s, relaxation_times(s, options));
   if (options.ramp_time > 0)
     s.loads.set_ramp([start, T = options.ramp_time](double t) {
       const double q = std::clamp((t - start) / T, 0.0, 1.0);
@@ -228,8 +238,6 @@ RunResult find_equilibrium(SimulationImpl<D>& s, const RelaxOptions& options) {
   s.step_ends();
   Relaxation relaxation(*s.formulation);
   double largest = 0;
-  // Where nothing is applied and nothing will be, round-off must not be compared with round-off.
-  const bool left_alone = is_left_alone(s, relaxation_times(s, options));
   const double round_off = left_alone ? force_of_round_off(s) : 0;
   // A passing coincidence of small forces is no equilibrium: they must stay small.
   constexpr int in_a_row = 20;

@@ -20,6 +20,8 @@ class VerletList {
   /// call, when the largest displacement since the last build exceeds half the skin distance, and when the
   /// number of points changes. \throws InputError as `find_pairs` does.
   bool update(PointView<D> x);
+  /// Whether `update` would build the list anew.
+  bool due(PointView<D> x);
 
   const PairList& pairs() const { return pairs_; }
   double radius() const { return radius_; }

@@ -20,15 +20,24 @@ template <int D>
 std::vector<double> multiplicity(const Cloud<D>& cloud,
                                  const std::vector<typename MirrorMap<D>::Plane>& planes);
 
-/// Orders the particles of a cloud for locality and lays out their state, mirror images within `reach` [m] of
-/// the planes, which are given in the cloud's own coordinates, behind them. `material[id]` indexes
+/// Where a body ends and yet goes on, in the coordinates of its cloud.
+template <int D>
+struct Surroundings {
+  std::vector<typename MirrorMap<D>::Plane> planes;
+  std::vector<typename MirrorMap<D>::Period> periods;
+  double reach = 0;     ///< how far beyond planes and ends of periods images are wanted [m]
+  bool follow = false;  ///< images follow the particles: leaves room for more of them
+};
+
+/// Orders the particles of a cloud for locality and lays out their state, images behind them. Nodes of cells
+/// at the two ends of a period are tied together. `material[id]` indexes
 /// `materials`. Where `interfaces` are given masses are those of the parts that materials have of particles,
 /// and with `twins` a particle of several parts becomes one for each, tied together. \throws InputError for a
-/// cloud without particles, volumes that are not positive, or a plane that cuts the body.
+/// cloud without particles, volumes that are not positive, a plane that cuts the body, or a period that it
+/// does not fit.
 template <int D>
 Particles<D> assemble(const Cloud<D>& cloud, std::vector<std::shared_ptr<const Material<D>>> materials,
-                      const std::vector<std::uint8_t>& material,
-                      const std::vector<typename MirrorMap<D>::Plane>& planes, double reach,
+                      const std::vector<std::uint8_t>& material, const Surroundings<D>& around,
                       const Interfaces<D>* interfaces = nullptr, bool twins = false);
 
 /// The pairs of particles and their images in the reference configuration, within the supports of a method.

@@ -3,6 +3,7 @@
 /// How health is measured: the parts that formulations call.
 
 #include <array>
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <taut/formulations/health.hpp>
@@ -43,14 +44,14 @@ MotionSample updated_motion(const Particles<D>& p, const std::vector<std::array<
 /// Which particles have nothing next to them on one side: where areas are known those with some, else those
 /// whose neighbours' mean is far off.
 template <int D>
-std::vector<bool> on_surface(const Particles<D>& p, const PairList& pairs);
+std::vector<std::uint8_t> on_surface(const Particles<D>& p, const PairList& pairs);
 /// Forces of a unit stress: those inside, and what those on faces leave of B where that is known.
 template <int D>
-void add_spurious_forces(const Particles<D>& p, const std::vector<bool>& surface, const Field& force,
+void add_spurious_forces(const Particles<D>& p, const std::vector<std::uint8_t>& surface, const Field& force,
                          double limit_inside, double limit_faces, Health& health);
 /// Fewest neighbours, and the fewest particles across.
 template <int D>
-void add_neighbourhoods(const Particles<D>& p, const PairList& pairs, const std::vector<bool>& surface,
+void add_neighbourhoods(const Particles<D>& p, const PairList& pairs, const std::vector<std::uint8_t>& surface,
                         Health& health);
 
 }  // namespace taut

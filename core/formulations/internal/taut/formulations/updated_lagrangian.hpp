@@ -32,7 +32,7 @@ constexpr std::array<int, 2> sym_axes(int c) {
   return D == 2 ? std::array<int, 2>{two[c][0], two[c][1]} : std::array<int, 2>{three[c][0], three[c][1]};
 }
 
-/// Updated Lagrangian SPH for hypoelastic materials (Gray, Monaghan & Swift 2001; methods 5.1):
+/// Updated Lagrangian SPH for hypoelastic materials (Gray, Monaghan & Swift 2001):
 ///   L_a = 1/rho_a sum_b m_b (v_b - v_a) (x) grad W_ab,   drho_a/dt = -rho_a tr L_a,   ds/dt by the material,
 ///   dv_a/dt = sum_b m_b (T_a + T_b + pair terms) grad W_ab,   T = sigma / rho^2.
 /// L is the adjoint of the force, so what work the forces do is the stress power. In plane stress rho is the
@@ -97,6 +97,8 @@ class UpdatedLagrangian : public Formulation<D> {
   PointView<D> points() const { return points_of<D>(x_, p_.total); }
   /// x = X + u of all particles, mirror images included.
   void update_positions();
+  /// Finds the images of the particles where these are now, after what has left a period was brought back.
+  void follow_images();
   /// Brings the pair list up to date; false, with `failure` set, where the particles are in no state to have
   /// one.
   bool update_list();
@@ -156,7 +158,7 @@ UpdatedLagrangian<D>::UpdatedLagrangian(const FormulationSetup<D>& setup)
   if (setup.method.velocity_gradient != "standard" && setup.method.velocity_gradient != "corrected")
     throw InputError(fmt::format("unknown velocity_gradient \"{}\"; valid: standard, corrected",
                                  setup.method.velocity_gradient));
-  const auto n = static_cast<std::size_t>(p_.total);
+  const std::size_t n = p_.X.particles();  // there is room for more images
   rho_ = rho_rate_ = rho_material_ = rho_material_rate_ = Field(n, 1);
   s_ = s_rate_ = T_ = Field(n, S);
   std::fill(rho_.flat().begin(), rho_.flat().end(), 1.0);
@@ -187,6 +189,34 @@ void UpdatedLagrangian<D>::update_positions() {
 }
 
 template <int D>
+void UpdatedLagrangian<D>::follow_images() {
+  if (!p_.mirror.periods().empty())
+    for (Index i = 0; i < p_.n; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const Vec<D> shift = p_.mirror.wrap(x_.template vec<D>(k));
+      if (shift.isZero(0)) continue;
+      // Displacements stay what they are: another period of the reference is where it comes from.
+      p_.X.template set_vec<D>(k, p_.X.template vec<D>(k) + shift);
+      x_.template set_vec<D>(k, p_.X.template vec<D>(k) + p_.u.template vec<D>(k));
+    }
+  p_.mirror.follow(x_, p_.n);
+  const auto room = static_cast<Index>(p_.X.particles());
+  if (p_.n + p_.mirror.size() > room) {
+    this->failure_ = Failure{"more images than there is room for", p_.mirror.master(room - p_.n)};
+    return;
+  }
+  p_.total = p_.n + p_.mirror.size();
+  for (Index k = p_.n; k < room; ++k) {
+    p_.X.template set_vec<D>(static_cast<std::size_t>(k), Vec<D>::Constant(1e30 * p_.dx));
+    p_.u.template set_vec<D>(static_cast<std::size_t>(k), Vec<D>::Zero());
+    x_.template set_vec<D>(static_cast<std::size_t>(k), Vec<D>::Constant(1e30 * p_.dx));
+  }
+  p_.mirror.positions(x_);
+  p_.mirror.vectors(p_.v);
+  p_.mirror.scalars(p_.m);
+}
+
+template <int D>
 bool UpdatedLagrangian<D>::update_list() {
   if (this->failure_) return false;
   for (Index i = 0; i < p_.n; ++i)
@@ -194,6 +224,8 @@ bool UpdatedLagrangian<D>::update_list() {
       this->failure_ = Failure{"not a number", i};
       return false;
     }
+  if (p_.mirror.possible() && list_.due(points())) follow_images();
+  if (this->failure_) return false;
   try {
     list_.update(points());
     return true;
@@ -224,7 +256,8 @@ void UpdatedLagrangian<D>::inspect() {
   // The widest gap is where the body tears.
   double widest = table_.support() * table_.support();
   for (const auto& [a, b] : nearest_) {
-    const double r2 = (x_.template vec<D>(a) - x_.template vec<D>(b)).squaredNorm();
+    const Vec<D> x_ab = x_.template vec<D>(a) - x_.template vec<D>(b);
+    const double r2 = p_.mirror.nearest(x_ab).squaredNorm();
     if (r2 <= widest) continue;
     widest = r2;
     this->failure_ = Failure{"lost neighbours", a};

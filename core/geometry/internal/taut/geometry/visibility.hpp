@@ -12,7 +12,7 @@ namespace taut {
 
 /// Whether the straight way between two sites stays in the closed union of the cells of a label: along an
 /// edge or a face of cells one of those around it does. Cells beyond symmetry planes are as those before
-/// them.
+/// them, cells beyond an end of a period as those behind the other.
 template <int D>
 class Visibility {
  public:
@@ -24,6 +24,9 @@ class Visibility {
   Visibility(const std::array<Index, D>& size, std::vector<std::uint8_t> label, Index reach);
   /// A symmetry plane across `axis` at a site's coordinate; `side` as in `MirrorMap::Plane`.
   void add_plane(int axis, Index at, int side) { planes_.push_back({axis, at, side}); }
+
+  /// What is at one end of the lattice along the axis goes on at the other.
+  void add_period(int axis) { periodic_[static_cast<std::size_t>(axis)] = true; }
 
   bool connects(const Site<D>& a, const Site<D>& b, std::uint8_t label) const;
   std::size_t bytes() const { return label_.size() + uniform_.size(); }
@@ -44,6 +47,7 @@ class Visibility {
   std::vector<std::uint8_t> uniform_;  // label of the cell and all within reach, or `nothing`
   Index reach_ = 0;
   std::vector<Plane> planes_;
+  std::array<bool, D> periodic_{};
 };
 
 }  // namespace taut

@@ -17,18 +17,22 @@ inline constexpr int chunk_particles = chunk_slices * lanes;
 /// Fewer particles than this are not worth waking the other threads for.
 inline constexpr Index parallel_from = 4096;
 
-/// Chunks of consecutive particles with the material they are of, or `mixed`.
+/// Chunks of consecutive particles with the materials that they hold.
 class MaterialGroups {
  public:
-  static constexpr int mixed = -1;
-
   template <int D>
-  explicit MaterialGroups(const Particles<D>& p)
-      : n_(p.n), material_(p.material), only_(static_cast<std::size_t>(chunks()), mixed) {
+  explicit MaterialGroups(const Particles<D>& p) : n_(p.n), material_(p.material) {
+    // Lanes behind the last particle do as it does.
+    if (n_ > 0) material_.resize(static_cast<std::size_t>(slices()) * lanes, material_.back());
+    begin_.push_back(0);
     for (Index c = 0; c < chunks(); ++c) {
-      const auto begin = material_.begin() + first(c), end = material_.begin() + std::min(first(c + 1), n_);
-      if (std::all_of(begin, end, [&](std::uint8_t m) { return m == *begin; }))
-        only_[static_cast<std::size_t>(c)] = *begin;
+      const std::size_t before = held_.size();
+      for (Index i = first(c); i < last_slice(c) * lanes; ++i) {
+        const std::uint8_t m = material_[static_cast<std::size_t>(i)];
+        if (std::find(held_.begin() + static_cast<std::ptrdiff_t>(before), held_.end(), m) == held_.end())
+          held_.push_back(m);
+      }
+      begin_.push_back(held_.size());
     }
   }
 
@@ -39,31 +43,30 @@ class MaterialGroups {
   Index last_slice(Index c) const { return std::min(first_slice(c + 1), slices()); }
 
   /// Calls `evaluate(m, out)` so that component k of particle i of the chunk ends up in out[k *
-  /// chunk_particles + i] from its own material m. On a border of materials each is asked for the whole
-  /// chunk.
+  /// chunk_particles + i] from its own material m. On a border of materials each that the chunk holds is
+  /// asked for all of it.
   template <int Components, class Evaluate>
   void call(Index c, double* out, Evaluate&& evaluate) const {
-    const int only = only_[static_cast<std::size_t>(c)];
-    if (only != mixed) {
-      evaluate(static_cast<std::size_t>(only), out);
-      return;
+    const std::uint8_t* m = held_.data() + begin_[static_cast<std::size_t>(c)];
+    const std::uint8_t* end = held_.data() + begin_[static_cast<std::size_t>(c) + 1];
+    evaluate(static_cast<std::size_t>(*m), out);
+    if (++m == end) return;
+    alignas(64) double each[Components * chunk_particles];
+    const std::uint8_t* own = material_.data() + first(c);
+    const Index count = (last_slice(c) - first_slice(c)) * lanes;
+    for (; m != end; ++m) {
+      evaluate(static_cast<std::size_t>(*m), each);
+      for (int k = 0; k < Components; ++k)
+        for (Index i = k * chunk_particles; i < k * chunk_particles + count; ++i)
+          out[i] = own[i - k * chunk_particles] == *m ? each[i] : out[i];
     }
-    alignas(64) double each[Components * chunk_particles], result[Components * chunk_particles] = {};
-    const std::size_t materials = 1u + *std::max_element(material_.begin(), material_.end());
-    for (std::size_t m = 0; m < materials; ++m) {
-      evaluate(m, each);
-      for (Index i = 0; i < (last_slice(c) - first_slice(c)) * lanes; ++i) {
-        if (material_[static_cast<std::size_t>(std::min(first(c) + i, n_ - 1))] != m) continue;
-        for (int k = 0; k < Components; ++k) result[k * chunk_particles + i] = each[k * chunk_particles + i];
-      }
-    }
-    std::copy(std::begin(result), std::end(result), out);
   }
 
  private:
   Index n_;
-  std::vector<std::uint8_t> material_;
-  std::vector<std::int16_t> only_;
+  std::vector<std::uint8_t> material_;  // of each particle, to the end of the last slice
+  std::vector<std::size_t> begin_;      // of each chunk in `held_`, and the end
+  std::vector<std::uint8_t> held_;
 };
 
 }  // namespace taut

@@ -6,7 +6,9 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <taut/base/types.hpp>
 #include <taut/formulations/health.hpp>
 #include <taut/geometry/geometry.hpp>
@@ -83,6 +85,8 @@ template <int D>
 class Simulation;
 template <int D>
 void write_vtkhdf(const std::string& file, const Simulation<D>& simulation);
+template <int D>
+void read_field(const Simulation<D>& simulation, std::string_view name, std::span<double> out);
 
 /// One or more bodies under one method. Everything is set before the first `run` or `relax`; set-up
 /// (ordering, pair lists, operators) happens then, or when `prepare` is called.
@@ -139,6 +143,11 @@ class Simulation {
   /// The body continues as its mirror image beyond the plane X[axis] = `at` [m], which must bound it.
   /// Particles on the plane slide in it. The loads of a scene are those of the part that is modelled.
   void symmetry_plane(int axis, double at);
+  /// The body repeats itself along the axis, once every `high` - `low` [m], between which it lies. Particles
+  /// must not lie on both ends, which are one place, except with formulations on cells: there the nodes of
+  /// both ends must match, and are tied. Displacements and velocities are periodic. \throws InputError for an
+  /// axis that has a symmetry plane or a period already, and in `prepare` for a body that does not fit.
+  void periodic(int axis, double low, double high);
 
   /// \throws InputError for what the parts refuse: particles that coincide or whose neighbours do not span
   /// the space, masses and stable steps that are no positive finite numbers.
@@ -178,6 +187,8 @@ class Simulation {
   /// particle). It extrapolates beyond the body, by up to three spacings from the nearest particle: asking
   /// for points that lie in it is up to the caller. \throws InputError farther out.
   Vec<D> displacement_at(const Vec<D>& X) const;
+  /// The same, to the last bit, for many points, in a time that hardly depends on the number of particles.
+  std::vector<Vec<D>> displacements_at(std::span<const Vec<D>> X) const;
 
   double kinetic_energy() const;   ///< [J]
   double strain_energy() const;    ///< [J]; hyperelastic total Lagrangian forms only
@@ -194,6 +205,7 @@ class Simulation {
  private:
   friend class StressRecovery<D>;
   friend void write_vtkhdf<D>(const std::string&, const Simulation<D>&);
+  friend void read_field<D>(const Simulation<D>&, std::string_view, std::span<double>);
   SimulationImpl<D>& impl() const;
   std::shared_ptr<SimulationImpl<D>> impl_;  // a loop that runs keeps it alive
 };

@@ -19,6 +19,7 @@ struct Support {
   const Constraints<D>& constraints;
   const Loads<D>& loads;
   const std::vector<typename MirrorMap<D>::Plane>& planes;
+  const std::vector<typename MirrorMap<D>::Period>& periods;
   double reach;                   ///< farthest neighbour [m]
   std::span<const double> times;  ///< at which loads are asked for [s]
 };

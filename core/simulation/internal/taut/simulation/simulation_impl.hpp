@@ -2,11 +2,9 @@
 /// \file
 /// What a Simulation is made of; shared by its set-up, its loops and its look at the state.
 
-#include <array>
 #include <functional>
 #include <list>
 #include <memory>
-#include <optional>
 #include <string>
 #include <taut/boundary/constraints.hpp>
 #include <taut/boundary/loads.hpp>
@@ -31,7 +29,8 @@ struct SimulationInput {
   std::vector<std::uint8_t> material;                // of each user's particle
   std::shared_ptr<const Interfaces<D>> interfaces;   // where cells are known and there are several materials
   std::vector<typename MirrorMap<D>::Plane> planes;  // in the cloud's coordinates
-  std::vector<std::function<void()>> conditions;     // boundary conditions, applied when places are known
+  std::vector<typename MirrorMap<D>::Period> periods;  // likewise
+  std::vector<std::function<void()>> conditions;       // boundary conditions, applied when places are known
   std::function<Vec<D>(const Vec<D>&)> initial_velocity, initial_displacement;
 };
 
@@ -73,14 +72,9 @@ struct SimulationImpl : SimulationInput<D>, SimulationBuilt<D> {
   const char* busy = nullptr;  // prepare, run or relax, while it lasts
   mutable bool mid_step = false;
   std::string lost;  // why there is no way on, if there is none
-  // Displacements and velocities from before the first step of a call, until that begins.
-  std::optional<std::array<Field, 2>> before_steps;
 
   // What throws from here to `step_ends` leaves a state of no time.
-  void step_begins() {
-    mid_step = true;
-    before_steps.reset();
-  }
+  void step_begins() { mid_step = true; }
   void step_ends() { mid_step = false; }
   /// Runs one of the loops. Where something throws before the first step the state is as it was, between two
   /// steps it is that of the last; within a step it is lost, and so is the simulation.
