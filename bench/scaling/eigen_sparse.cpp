@@ -3,6 +3,7 @@
 #include <array>
 #include <scaling/baseline.hpp>
 #include <scaling/engine_step.hpp>
+#include <taut/base/parallel.hpp>
 
 namespace taut::bench {
 namespace {
@@ -95,27 +96,30 @@ class EigenSparse final : public Baseline {
   void stress() {
     constexpr int block = 64;
     const Eigen::Index n = x_.rows();
+    ParallelError error;
 #pragma omp parallel for schedule(static) num_threads(threads_)
-    for (Eigen::Index first = 0; first < n; first += block) {
-      alignas(64) double F[9 * block], P[9 * block];
-      for (int l = 0; l < block; ++l) {
-        // The last block is filled up with its last particle.
-        const Eigen::Index i = std::min(first + l, n - 1);
-        Mat<3> sum;
-        for (std::size_t e = 0; e < 3; ++e)
-          sum.col(static_cast<Eigen::Index>(e)) = H_[e].row(i) - row_sum_[e][i] * x_.row(i);
-        const Mat<3> Fi = sum * M_[static_cast<std::size_t>(i)].transpose();
-        for (int c = 0; c < 9; ++c) F[c * block + l] = Fi(c / 3, c % 3);
-      }
-      material_->stress({block, block, F, P, nullptr});
-      for (int l = 0; l < std::min<Eigen::Index>(block, n - first); ++l) {
-        const Eigen::Index i = first + l;
-        Mat<3> Pi;
-        for (int c = 0; c < 9; ++c) Pi(c / 3, c % 3) = P[c * block + l];
-        const Mat<3> Q = V_[i] * Pi * M_[static_cast<std::size_t>(i)];
-        for (std::size_t e = 0; e < 3; ++e) Q_[e].row(i) = Q.col(static_cast<Eigen::Index>(e));
-      }
-    }
+    for (Eigen::Index first = 0; first < n; first += block)
+      error.guard([&] {
+        alignas(64) double F[9 * block], P[9 * block];
+        for (int l = 0; l < block; ++l) {
+          // The last block is filled up with its last particle.
+          const Eigen::Index i = std::min(first + l, n - 1);
+          Mat<3> sum;
+          for (std::size_t e = 0; e < 3; ++e)
+            sum.col(static_cast<Eigen::Index>(e)) = H_[e].row(i) - row_sum_[e][i] * x_.row(i);
+          const Mat<3> Fi = sum * M_[static_cast<std::size_t>(i)].transpose();
+          for (int c = 0; c < 9; ++c) F[c * block + l] = Fi(c / 3, c % 3);
+        }
+        material_->stress({block, block, F, P, nullptr});
+        for (int l = 0; l < std::min<Eigen::Index>(block, n - first); ++l) {
+          const Eigen::Index i = first + l;
+          Mat<3> Pi;
+          for (int c = 0; c < 9; ++c) Pi(c / 3, c % 3) = P[c * block + l];
+          const Mat<3> Q = V_[i] * Pi * M_[static_cast<std::size_t>(i)];
+          for (std::size_t e = 0; e < 3; ++e) Q_[e].row(i) = Q.col(static_cast<Eigen::Index>(e));
+        }
+      });
+    error.rethrow();
   }
 
   std::shared_ptr<const Hyperelastic<3>> material_;

@@ -9,6 +9,7 @@
 #include <taut/base/error.hpp>
 #include <taut/neighbors/nanoflann.hpp>
 #include <tuple>
+#include <taut/base/parallel.hpp>
 
 namespace taut::bench {
 namespace {
@@ -97,8 +98,9 @@ SearchedRows nanoflann_lists(const ListCloud& cloud, int threads) {
   const Tree tree(3, adaptor, nanoflann::KDTreeSingleIndexAdaptorParams(10));
   SearchedRows result;
   result.pieces.resize(static_cast<std::size_t>(threads));
+  ParallelError error;
 #pragma omp parallel num_threads(threads)
-  {
+  error.guard([&] {
     const auto t = static_cast<std::size_t>(omp_get_thread_num()),
                all = static_cast<std::size_t>(omp_get_num_threads());
     SearchedRows::Piece& piece = result.pieces[t];
@@ -115,7 +117,8 @@ SearchedRows nanoflann_lists(const ListCloud& cloud, int threads) {
         if (b != static_cast<Index>(i)) piece.neighbour.push_back(b);
       piece.row.push_back(piece.neighbour.size());
     }
-  }
+  });
+  error.rethrow();
   return result;
 }
 

@@ -20,6 +20,9 @@ Material<D>::Material(const MaterialParameters& parameters) : parameters_(parame
                   : ""));
   if (!(std::isfinite(density) && density > 0))
     throw InputError(fmt::format("density = {}: must be finite and greater than 0 kg/m^3", density));
+  if (plane != Plane::strain && plane != Plane::stress)
+    throw InputError(fmt::format("plane: the value {} of Plane has no name; valid: strain, stress",
+                                 static_cast<int>(plane)));
 }
 
 template <int D>

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <taut/base/parallel.hpp>
 #include <taut/neighbors/cell_grid.hpp>
 #include <taut/neighbors/lanes.hpp>
-#include <taut/neighbors/parallel.hpp>
 #include <taut/neighbors/sort_by_key.hpp>
 
 namespace taut::detail::inline TAUT_SIMD_NAMESPACE {

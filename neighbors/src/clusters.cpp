@@ -1,6 +1,6 @@
 #include <algorithm>
+#include <taut/base/parallel.hpp>
 #include <taut/neighbors/clusters.hpp>
-#include <taut/neighbors/parallel.hpp>
 #include <utility>
 
 namespace taut::detail {

@@ -1,14 +1,16 @@
 #include <bit>
+#include <taut/base/error.hpp>
+#include <taut/base/parallel.hpp>
 #include <taut/neighbors/pair_list.hpp>
-#include <taut/neighbors/parallel.hpp>
 
 namespace taut {
 
 void filter_pairs(PairList& list, const std::function<bool(Index, Index)>& keep) {
+  if (!keep) throw InputError("filter_pairs: the predicate is an empty function");
   std::int64_t pairs = 0, empty = 0;
-  detail::ParallelError error;
+  ParallelError error;
 #pragma omp parallel for schedule(dynamic, 64) reduction(+ : pairs, empty) \
-    if (detail::worth_threads(list.particles()))
+    if (worth_threads(list.particles()))
   for (Index s = 0; s < list.slices(); ++s)
     error.guard([&] {
       for (std::int64_t k = list.begin(s); k < list.begin(s + 1); ++k) {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 #include <taut/base/error.hpp>
-#include <taut/neighbors/parallel.hpp>
+#include <taut/base/parallel.hpp>
 #include <taut/neighbors/point_check.hpp>
 #include <taut/neighbors/search.hpp>
 #include <taut/neighbors/sort_by_key.hpp>
@@ -20,13 +20,12 @@ double bin_of(double x, double width) { return std::floor(std::clamp(x / width, 
 
 // The occupied bins of one coordinate, ascending.
 std::vector<double> occupied_bins(const double* x, Index n, double width) {
-  std::vector<std::unordered_set<double>> sets(static_cast<std::size_t>(omp_get_max_threads()));
-#pragma omp parallel if (detail::worth_threads(n))
-  {
-    std::unordered_set<double>& set = sets[static_cast<std::size_t>(omp_get_thread_num())];
-#pragma omp for schedule(static)
-    for (Index i = 0; i < n; ++i) set.insert(bin_of(x[i], width));
-  }
+  const auto parts = worth_threads(n) ? static_cast<std::size_t>(omp_get_max_threads()) : 1;
+  std::vector<std::unordered_set<double>> sets(parts);
+  parallel_for(parts, parts > 1, [&](std::size_t part) {
+    const std::size_t points = static_cast<std::size_t>(n), last = points * (part + 1) / parts;
+    for (std::size_t i = points * part / parts; i < last; ++i) sets[part].insert(bin_of(x[i], width));
+  });
   std::vector<double> bins;
   for (const auto& set : sets) bins.insert(bins.end(), set.begin(), set.end());
   std::sort(bins.begin(), bins.end());
@@ -132,7 +131,7 @@ Keys row_keys(const PointView<D>& points, double cell) {
   std::uint64_t block = 1;
   if constexpr (D == 3) block = rows_a_block(static_cast<double>(points.n) / rows, planes[1].rank.back() + 1);
   Keys keys(static_cast<std::size_t>(points.n));
-#pragma omp parallel for schedule(static) if (detail::worth_threads(points.n))
+#pragma omp parallel for schedule(static) if (worth_threads(points.n))
   for (Index i = 0; i < points.n; ++i) {
     std::uint64_t key = 0;
     if constexpr (D == 2) key = planes[1](points.x[1][i]);
@@ -167,7 +166,7 @@ SortKeys curve_keys(const PointView<D>& points, double cell) {
   }
   const int shift = std::max(0, bits - 63 / D);
   Keys keys(static_cast<std::size_t>(points.n));
-#pragma omp parallel for schedule(static) if (detail::worth_threads(points.n))
+#pragma omp parallel for schedule(static) if (worth_threads(points.n))
   for (Index i = 0; i < points.n; ++i) {
     std::array<std::uint64_t, D> c;
     for (int d = 0; d < D; ++d) {
@@ -207,7 +206,7 @@ void sort_within(const PointView<D>& points, const Keys& sorted, int within, boo
       self(self, from, i, shift);
     }
   };
-#pragma omp parallel for schedule(dynamic, 4096) if (detail::worth_threads(points.n))
+#pragma omp parallel for schedule(dynamic, 4096) if (worth_threads(points.n))
   for (Index i = 0; i < points.n; ++i) {
     if (i > 0 && same(i, i - 1, within)) continue;
     Index end = i + 1;

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 #include <taut/base/error.hpp>
+#include <taut/base/parallel.hpp>
 #include <taut/neighbors/pair_list_builder.hpp>
-#include <taut/neighbors/parallel.hpp>
 #include <type_traits>
 
 namespace taut {
@@ -109,14 +109,10 @@ PairList PairListBuilder::build() {
   enlarge(list_.first_, before, slots_);
   enlarge(list_.mask_, before, slots_);
   enlarge(list_.index_, index_before, blocks_ * lanes);
-  detail::ParallelError error;
-#pragma omp parallel for schedule(static) if (detail::worth_threads(particles_))
-  for (std::size_t i = 0; i < late_.size(); ++i)
-    error.guard([&] {
-      const detail::EncodedSlices chunk = std::move(late_[i].second);
-      fill(chunk, late_[i].first);
-    });
-  error.rethrow();
+  parallel_for(late_.size(), worth_threads(particles_), [&](std::size_t i) {
+    const detail::EncodedSlices chunk = std::move(late_[i].second);
+    fill(chunk, late_[i].first);
+  });
   list_.first_.truncate(static_cast<std::size_t>(slots_));
   list_.mask_.truncate(static_cast<std::size_t>(slots_));
   list_.index_.truncate(static_cast<std::size_t>(blocks_) * lanes);

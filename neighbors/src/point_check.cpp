@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 #include <taut/base/error.hpp>
-#include <taut/neighbors/parallel.hpp>
+#include <taut/base/parallel.hpp>
 #include <taut/neighbors/point_check.hpp>
 
 namespace taut::detail {
@@ -29,7 +29,7 @@ void check_points(const PointView<D>& points) {
   if (points.n < 0)
     throw InputError(fmt::format("{} points: the number of points cannot be negative", points.n));
   Index bad = points.n;
-#pragma omp parallel for schedule(static) reduction(min : bad) if (detail::worth_threads(points.n))
+#pragma omp parallel for schedule(static) reduction(min : bad) if (worth_threads(points.n))
   for (Index i = 0; i < points.n; ++i)
     for (int d = 0; d < D; ++d)
       if (!std::isfinite(points.x[d][i])) bad = std::min(bad, i);
@@ -62,11 +62,11 @@ void throw_coincident(const PointView<D>& points, const Radii& radii, Index a) {
     }
     const double r = std::min(radii(a), radii(b));
     if (d2 <= r * r * coincident2)
-      throw InputError(fmt::format(
+      throw CoincidentPoints(fmt::format(
           "particles {} and {} coincide at {}: remove one of them, or move overlapping bodies apart",
           std::min(a, b), std::max(a, b), position(points, a)));
   }
-  throw InputError(fmt::format("particle {} coincides with another one at {}", a, position(points, a)));
+  throw CoincidentPoints(fmt::format("particle {} coincides with another one at {}", a, position(points, a)));
 }
 
 template void check_points(const PointView<1>&);

@@ -2,7 +2,7 @@
 
 #include <cmath>
 #include <taut/base/error.hpp>
-#include <taut/neighbors/parallel.hpp>
+#include <taut/base/parallel.hpp>
 #include <taut/neighbors/verlet_list.hpp>
 
 namespace taut {
@@ -22,7 +22,7 @@ bool VerletList<D>::due(PointView<D> x) {
   if (builds_ == 0 || x.n != pairs_.particles()) return true;
   double largest = 0;
   bool finite = true;
-#pragma omp parallel for schedule(static) reduction(max : largest) reduction(&& : finite) if (detail::worth_threads(x.n))
+#pragma omp parallel for schedule(static) reduction(max : largest) reduction(&& : finite) if (worth_threads(x.n))
   for (Index i = 0; i < x.n; ++i) {
     double d2 = 0;
     for (int d = 0; d < D; ++d) {

@@ -1,8 +1,8 @@
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <taut/base/error.hpp>
+#include <taut/base/small_solve.hpp>
 #include <taut/formulations/auto_method.hpp>
 #include <taut/neighbors/search.hpp>
 #include <vector>
@@ -20,14 +20,13 @@ bool spans(const Cloud<D>& cloud, const PairList& pairs, Index a, double support
   const auto spacing = [&](Index i) {
     return cloud.spacing.empty() ? cloud.dx : cloud.spacing[static_cast<std::size_t>(i)];
   };
-  Eigen::Matrix<double, D, D> moments = Eigen::Matrix<double, D, D>::Zero();
+  Mat<D> moments = Mat<D>::Zero();
   pairs.for_each(a, [&](Index b, std::int64_t, int) {
     const Vec<D> X = cloud.X[static_cast<std::size_t>(b)] - cloud.X[static_cast<std::size_t>(a)];
     const double q = X.norm() / (support * std::max(spacing(a), spacing(b)));
     if (q < 1) moments += (1 - q) * (1 - q) * X * X.transpose();
   });
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, D, D>> of(moments, Eigen::EigenvaluesOnly);
-  return of.eigenvalues()[0] > thin * moments.trace();
+  return symmetric_eigen<D>(moments).values[0] > thin * moments.trace();
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <taut/base/parallel.hpp>
 #include <taut/formulations/formulations.hpp>
 #include <taut/formulations/power_iteration.hpp>
 #include <taut/formulations/rest_stiffness.hpp>
@@ -193,56 +194,56 @@ template <int D>
 template <class Stresses>
 auto TlBondAssociated<D>::bond_pass(const Columns<D>& u, const Stresses& stresses) -> Seen {
   const Columns<D * D> H(H_);
-  Index inverted = p_.n;
-  StretchExtremes<D> extremes;
-#pragma omp parallel if (p_.n > parallel_from)
-  {
-    StretchExtremes<D> mine;
-#pragma omp for schedule(static) reduction(min : inverted)
-    for (Index s = 0; s < groups_.slices(); ++s) {
-      const Index i = s * lanes;
-      Pack force[D], moment[D * D];  // sum_b P_ab X_ab / |X_ab|^2, sum_b P_ab (I - X_ab (x) X_ab / |X_ab|^2)
-      for (auto& c : force) c = pack(0);
-      for (auto& c : moment) c = pack(0);
-      Bonds all;
-      prefetch_neighbours(pairs_, s, H);
-      for_bonds(s, u, H, all, [&](Bonds& bonds) {
-        PackMask bad{};
-        for (int j = 0; j < bonds.count; ++j) {
-          Pack f[D * D];
-          for (int c = 0; c < D * D; ++c) f[c] = load(bonds.F + c * chunk + j * lanes);
-          bad |= ~(mine.add(f) > 0);
-        }
-        for (int l = 0; l < lanes; ++l)
-          if (bad[l]) inverted = std::min(inverted, std::min(i + l, p_.n - 1));
-        alignas(64) double P[D * D * chunk];
-        for (std::size_t m = 0; m < materials_.size(); ++m) {
-          if (!volumes(s, m, true, bonds)) continue;
-          stresses(m, StressBlock<D>{bonds.count * lanes, chunk, bonds.F, P, nullptr, bonds.H_diagonal});
-          for (int j = 0; j < bonds.count; ++j)
-            for (int d = 0; d < D; ++d) {
-              Pack row[D], along = pack(0);
-              for (int e = 0; e < D; ++e) {
-                row[e] = weighted(bonds.volume[j], load(P + (d * D + e) * chunk + j * lanes));
-                along += row[e] * bonds.X[j][e];
-              }
-              along *= bonds.inverse[j];
-              force[d] += along;
-              for (int e = 0; e < D; ++e) moment[d * D + e] += row[e] - along * bonds.X[j][e];
-            }
-        }
-      });
-      const SliceCoefficients<D> of(op_, s);
-      for (int d = 0; d < D; ++d) {
-        store(p_.a.component(d) + i, force[d]);
-        for (int e = 0; e < D; ++e)
-          store(Q_.component(d * D + e) + i, 0.5 * of.times_matrix(moment + d * D, e));
+  struct Watch {
+    StretchExtremes<D> extremes;
+    Index inverted;
+  };
+  Watch seen{{}, p_.n};
+  const auto of_slice = [&](Index s, Watch& mine) {
+    const Index i = s * lanes;
+    Pack force[D], moment[D * D];  // sum_b P_ab X_ab / |X_ab|^2, sum_b P_ab (I - X_ab (x) X_ab / |X_ab|^2)
+    for (auto& c : force) c = pack(0);
+    for (auto& c : moment) c = pack(0);
+    Bonds all;
+    prefetch_neighbours(pairs_, s, H);
+    for_bonds(s, u, H, all, [&](Bonds& bonds) {
+      PackMask bad{};
+      for (int j = 0; j < bonds.count; ++j) {
+        Pack f[D * D];
+        for (int c = 0; c < D * D; ++c) f[c] = load(bonds.F + c * chunk + j * lanes);
+        bad |= ~(mine.extremes.add(f) > 0);
       }
+      for (int l = 0; l < lanes; ++l)
+        if (bad[l]) mine.inverted = std::min(mine.inverted, std::min(i + l, p_.n - 1));
+      alignas(64) double P[D * D * chunk];
+      for (std::size_t m = 0; m < materials_.size(); ++m) {
+        if (!volumes(s, m, true, bonds)) continue;
+        stresses(m, StressBlock<D>{bonds.count * lanes, chunk, bonds.F, P, nullptr, bonds.H_diagonal});
+        for (int j = 0; j < bonds.count; ++j)
+          for (int d = 0; d < D; ++d) {
+            Pack row[D], along = pack(0);
+            for (int e = 0; e < D; ++e) {
+              row[e] = weighted(bonds.volume[j], load(P + (d * D + e) * chunk + j * lanes));
+              along += row[e] * bonds.X[j][e];
+            }
+            along *= bonds.inverse[j];
+            force[d] += along;
+            for (int e = 0; e < D; ++e) moment[d * D + e] += row[e] - along * bonds.X[j][e];
+          }
+      }
+    });
+    const SliceCoefficients<D> of(op_, s);
+    for (int d = 0; d < D; ++d) {
+      store(p_.a.component(d) + i, force[d]);
+      for (int e = 0; e < D; ++e)
+        store(Q_.component(d * D + e) + i, 0.5 * of.times_matrix(moment + d * D, e));
     }
-#pragma omp critical
-    extremes.merge(mine);
-  }
-  return {extremes.bounds(), inverted};
+  };
+  parallel_for(groups_.slices(), p_.n > parallel_from, seen, of_slice, [&](const Watch& mine) {
+    seen.extremes.merge(mine.extremes);
+    seen.inverted = std::min(seen.inverted, mine.inverted);
+  });
+  return {seen.extremes.bounds(), seen.inverted};
 }
 
 template <int D>
@@ -293,8 +294,7 @@ double TlBondAssociated<D>::strain_energy() const {
   if (!p_.mirror.empty()) p_.mirror.tensors(gradients);
   const Columns<D * D> H(gradients);
   std::vector<double> energy(static_cast<std::size_t>(groups_.slices()), 0.0);
-#pragma omp parallel for schedule(static) if (p_.n > parallel_from)
-  for (Index s = 0; s < groups_.slices(); ++s) {
+  parallel_for(groups_.slices(), p_.n > parallel_from, [&](Index s) {
     Bonds all;
     for_bonds(s, u, H, all, [&](Bonds& bonds) {
       alignas(64) double P[D * D * chunk], e[chunk];
@@ -308,7 +308,7 @@ double TlBondAssociated<D>::strain_energy() const {
         }
       }
     });
-  }
+  });
   double total = 0;
   for (const double e : energy) total += e;
   return total;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <taut/base/parallel.hpp>
 #include <taut/formulations/formulations.hpp>
 #include <taut/formulations/power_iteration.hpp>
 #include <taut/formulations/rest_stiffness.hpp>
@@ -66,50 +67,50 @@ void TlDisplacement<D>::gradient_pass(const Payload& payload) {
   const double* V = p_.V.component(0);
   double* Q[D * D];
   for (int c = 0; c < D * D; ++c) Q[c] = Q_.component(c);
-  Index inverted = p_.n;
-  StretchExtremes<D> extremes;
-#pragma omp parallel if (p_.n > parallel_from)
-  {
-    StretchExtremes<D> mine;
-#pragma omp for schedule(static) reduction(min : inverted)
-    for (Index c = 0; c < groups_.chunks(); ++c) {
-      alignas(64) double F[D * D * chunk], H_diagonal[D * chunk];
-      const Index first = groups_.first_slice(c), last = groups_.last_slice(c);
-      PackMask bad{};
-      for (Index s = first; s < last; ++s) {
-        Pack f[D * D];
-        prefetch_neighbours(pairs_, s, u, payload);
-        gradient_of_slice<D>(s, pairs_, payload, u, {op_, s}, f);
-        if ((s + 1) * lanes > p_.n) this->fill_padding(s, f);
-        if (control_) control_->keep(s, f);
-        const Index at = (s - first) * lanes;
-        deform<D>(f, chunk, F + at, H_diagonal + at);
-        bad |= ~(mine.add(f) > 0);
-      }
-      if (any(bad)) inverted = std::min(inverted, first_inverted(first, last, F));
-      alignas(64) double P_of_chunk[D * D * chunk];
-      const int n = (last - first) * lanes;
-      groups_.template call<D * D>(c, P_of_chunk, [&](std::size_t m, double* P) {
-        materials_[m]->stress({n, chunk, F, P, nullptr, H_diagonal});
-      });
-      for (Index s = first; s < last; ++s) {
-        const Index i = s * lanes;
-        const double* P = P_of_chunk + (s - first) * lanes;
-        const SliceCoefficients<D> of(op_, s);
-        const Pack Vi = load(V + i);
-        for (int d = 0; d < D; ++d) {
-          Pack row[D];
-          for (int j = 0; j < D; ++j) row[j] = load(P + (d * D + j) * chunk);
-          for (int e = 0; e < D; ++e) store(Q[d * D + e] + i, of.times_matrix(row, e) * Vi);
-        }
-        if (control_) control_->add_stress(s, u, of, Q_);
-      }
+  struct Seen {
+    StretchExtremes<D> extremes;
+    Index inverted;
+  };
+  Seen seen{{}, p_.n};
+  const auto of_chunk = [&](Index c, Seen& mine) {
+    alignas(64) double F[D * D * chunk], H_diagonal[D * chunk];
+    const Index first = groups_.first_slice(c), last = groups_.last_slice(c);
+    PackMask bad{};
+    for (Index s = first; s < last; ++s) {
+      Pack f[D * D];
+      prefetch_neighbours(pairs_, s, u, payload);
+      gradient_of_slice<D>(s, pairs_, payload, u, {op_, s}, f);
+      if ((s + 1) * lanes > p_.n) this->fill_padding(s, f);
+      if (control_) control_->keep(s, f);
+      const Index at = (s - first) * lanes;
+      deform<D>(f, chunk, F + at, H_diagonal + at);
+      bad |= ~(mine.extremes.add(f) > 0);
     }
-#pragma omp critical
-    extremes.merge(mine);
-  }
-  this->stretch_ = extremes.bounds();
-  if (inverted < p_.n) this->fail_inverted(inverted);
+    if (any(bad)) mine.inverted = std::min(mine.inverted, first_inverted(first, last, F));
+    alignas(64) double P_of_chunk[D * D * chunk];
+    const int n = (last - first) * lanes;
+    groups_.template call<D * D>(c, P_of_chunk, [&](std::size_t m, double* P) {
+      materials_[m]->stress({n, chunk, F, P, nullptr, H_diagonal});
+    });
+    for (Index s = first; s < last; ++s) {
+      const Index i = s * lanes;
+      const double* P = P_of_chunk + (s - first) * lanes;
+      const SliceCoefficients<D> of(op_, s);
+      const Pack Vi = load(V + i);
+      for (int d = 0; d < D; ++d) {
+        Pack row[D];
+        for (int j = 0; j < D; ++j) row[j] = load(P + (d * D + j) * chunk);
+        for (int e = 0; e < D; ++e) store(Q[d * D + e] + i, of.times_matrix(row, e) * Vi);
+      }
+      if (control_) control_->add_stress(s, u, of, Q_);
+    }
+  };
+  parallel_for(groups_.chunks(), p_.n > parallel_from, seen, of_chunk, [&](const Seen& mine) {
+    seen.extremes.merge(mine.extremes);
+    seen.inverted = std::min(seen.inverted, mine.inverted);
+  });
+  this->stretch_ = seen.extremes.bounds();
+  if (seen.inverted < p_.n) this->fail_inverted(seen.inverted);
 }
 
 // The first particle of a chunk whose J is not positive, or n.
@@ -165,8 +166,7 @@ template <int D>
 double TlDisplacement<D>::strain_energy() const {
   this->need_energies();
   std::vector<double> energy(static_cast<std::size_t>(groups_.chunks()), 0.0);
-#pragma omp parallel for schedule(static) if (p_.n > parallel_from)
-  for (Index c = 0; c < groups_.chunks(); ++c) {
+  parallel_for(groups_.chunks(), p_.n > parallel_from, [&](Index c) {
     alignas(64) double F[D * D * chunk], H_diagonal[D * chunk], P[D * D * chunk], e[chunk];
     const Index first = groups_.first_slice(c), last = groups_.last_slice(c);
     alignas(64) double of_control[chunk] = {};
@@ -185,7 +185,7 @@ double TlDisplacement<D>::strain_energy() const {
       energy[static_cast<std::size_t>(c)] +=
           p_.modelled_share(i) *
           (p_.V.component(0)[i] * e[i - first * lanes] + of_control[i - first * lanes]);
-  }
+  });
   double total = 0;
   for (const double e : energy) total += e;
   return total;

@@ -8,6 +8,7 @@
 #include <taut/base/describe.hpp>
 #include <taut/base/disjoint_sets.hpp>
 #include <taut/base/error.hpp>
+#include <taut/base/parallel.hpp>
 #include <taut/formulations/cell_kinematics.hpp>
 #include <taut/formulations/cell_strips.hpp>
 #include <taut/formulations/formulations.hpp>
@@ -269,18 +270,16 @@ void TlStressPoints<D>::sweep_part(const std::vector<Visit>& part, const Field& 
 template <int D>
 void TlStressPoints<D>::update_accelerations(double t) {
   share_out();
-  StretchExtremes<D> extremes;
-  Index inverted = std::numeric_limits<Index>::max();
-#pragma omp parallel for schedule(static, 1) reduction(min : inverted) if (parts_.size() > 1)
-  for (std::size_t part = 0; part < parts_.size(); ++part) {
-    ElasticLaw law{*this};
-    sweep_part(parts_[part], p_.u, law);
-    inverted = std::min(inverted, law.inverted);
-#pragma omp critical
-    extremes.merge(law.extremes);
-  }
-  this->stretch_ = extremes.bounds();
-  if (inverted < p_.n) this->fail_inverted(inverted);
+  ElasticLaw seen{*this};
+  parallel_for(
+      parts_.size(), parts_.size() > 1, seen,
+      [&](std::size_t part, ElasticLaw& law) { sweep_part(parts_[part], p_.u, law); },
+      [&](const ElasticLaw& law) {
+        seen.extremes.merge(law.extremes);
+        seen.inverted = std::min(seen.inverted, law.inverted);
+      });
+  this->stretch_ = seen.extremes.bounds();
+  if (seen.inverted < p_.n) this->fail_inverted(seen.inverted);
   this->finish_accelerations(t);
 }
 
@@ -290,8 +289,7 @@ double TlStressPoints<D>::strain_energy() const {
   const auto strips = cells_.strips();
   std::vector<double> energy(strips.size(), 0.0);
   const Columns<D> u(p_.u);
-#pragma omp parallel for schedule(static) if (p_.n > parallel_from)
-  for (std::size_t k = 0; k < strips.size(); ++k) {
+  parallel_for(strips.size(), p_.n > parallel_from, [&](std::size_t k) {
     const Strip& s = strips[k];
     for (Index j = 0; j < s.count; j += lanes)
       energy[k] += with_cells(s, j, [&](const auto& cells) {
@@ -313,7 +311,7 @@ double TlStressPoints<D>::strain_energy() const {
         for (int l = 0; l < std::min<Index>(lanes, s.count - j); ++l) sum += all[l];
         return sum;
       });
-  }
+  });
   double total = 0;
   for (const double e : energy) total += e;
   return total;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <string>
+#include <system_error>
 #include <taut/base/error.hpp>
 #include <taut/base/powers.hpp>
 #include <taut/geometry/geometry.hpp>
@@ -26,7 +27,8 @@ std::string_view trim(std::string_view s) {
 class Lines {
  public:
   explicit Lines(const std::filesystem::path& file) : name_(file.string()), in_(file, std::ios::binary) {
-    if (!in_ || std::filesystem::is_directory(file))
+    std::error_code unknown;
+    if (!in_ || std::filesystem::is_directory(file, unknown))
       throw InputError(fmt::format("{}: cannot be opened", name_));
   }
 
@@ -70,12 +72,21 @@ class Lines {
   }
 
  private:
+  // The library's streams throw for files that have a name and no bytes to read (directories,
+  // /proc/self/mem).
+  int next_byte() {
+    try {
+      return in_.rdbuf()->sbumpc();
+    } catch (const std::ios_base::failure& error) {
+      fail_whole(fmt::format("cannot be read: {}", error.what()));
+    }
+  }
   // The next line, without its end; false where there is none. What has no line ends is no table (/dev/zero
   // has no end either).
   bool read() {
     constexpr std::size_t longest = 1000000;
     text_.clear();
-    for (int c = in_.rdbuf()->sbumpc();; c = in_.rdbuf()->sbumpc()) {
+    for (int c = next_byte();; c = next_byte()) {
       if (c == std::char_traits<char>::eof()) {
         if (text_.empty()) return false;
         break;

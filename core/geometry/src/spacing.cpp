@@ -6,6 +6,7 @@
 #include <nanoflann.hpp>
 #include <numeric>
 #include <span>
+#include <taut/base/parallel.hpp>
 #include <taut/geometry/spacing.hpp>
 
 namespace taut {
@@ -31,16 +32,15 @@ void each_nearest(const std::vector<Vec<D>>& X, std::size_t k, F&& f) {
   const Points<D> points{X};
   const nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Points<D>>, Points<D>, D>
       tree(D, points, nanoflann::KDTreeSingleIndexAdaptorParams(10));
-#pragma omp parallel
-  {
+  constexpr std::size_t block = 1024;
+  parallel_for((X.size() + block - 1) / block, true, [&](std::size_t b) {
     std::vector<std::uint32_t> index(k);
     std::vector<double> squared(k);
-#pragma omp for schedule(static)
-    for (std::size_t p = 0; p < X.size(); ++p) {
+    for (std::size_t p = b * block; p < std::min((b + 1) * block, X.size()); ++p) {
       const std::size_t found = tree.knnSearch(X[p].data(), k, index.data(), squared.data());
       f(p, std::span(index).first(found), std::span(squared).first(found));
     }
-  }
+  });
 }
 }  // namespace
 

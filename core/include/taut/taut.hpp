@@ -10,5 +10,6 @@
 #include <taut/materials/material.hpp>
 #include <taut/operators/method.hpp>
 #include <taut/output/derived.hpp>
+#include <taut/output/particle_fields.hpp>
 #include <taut/output/stress_recovery.hpp>
 #include <taut/simulation/simulation.hpp>

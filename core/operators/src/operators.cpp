@@ -6,6 +6,7 @@
 #include <cmath>
 #include <taut/base/describe.hpp>
 #include <taut/base/error.hpp>
+#include <taut/base/parallel.hpp>
 #include <taut/base/powers.hpp>
 #include <taut/operators/antisymmetric_operator.hpp>
 #include <taut/operators/block_dictionary.hpp>
@@ -27,8 +28,7 @@ void fill_vectors(const Particles<D>& p, const PairList& pairs, const Kernel& ke
                   const PairOperator<D>& op, AlignedArray<Real>& out) {
   out = AlignedArray<Real>(static_cast<std::size_t>(pairs.slots()) * D * lanes);
   const double* w = op.weight.empty() ? nullptr : op.weight.component(0);
-#pragma omp parallel for schedule(static)
-  for (Index s = 0; s < pairs.slices(); ++s)
+  parallel_for(pairs.slices(), true, [&](Index s) {
     for (Index a = s * lanes; a < std::min<Index>((s + 1) * lanes, pairs.particles()); ++a)
       pairs.for_each(a, [&](Index b, std::int64_t k, int lane) {
         const Vec<D> rab = p.X.template vec<D>(a) - p.X.template vec<D>(b);
@@ -39,6 +39,7 @@ void fill_vectors(const Particles<D>& p, const PairList& pairs, const Kernel& ke
         for (int d = 0; d < D; ++d)
           out[static_cast<std::size_t>((k * D + d) * lanes + lane)] = static_cast<Real>(slope * rab[d]);
       });
+  });
 }
 
 // The vectors along the kernel's gradient in the precision of `op`, or what they are shared or recomputed
@@ -150,8 +151,7 @@ void fill_matrices(bool corrected, const Particles<D>& p, const PairList& pairs,
   const Columns<D> X(p.X);
   const double* V = p.V.component(0);
   std::atomic<Index> singular{p.n};
-#pragma omp parallel for schedule(static) if (chunks > 1)
-  for (Index chunk = 0; chunk < chunks; ++chunk)
+  parallel_for(chunks, chunks > 1, [&](Index chunk) {
     for (Index s = chunk * chunk_slices; s < std::min((chunk + 1) * chunk_slices, slices); ++s) {
       Moments<D> m;
       moments_of_slice<D>(s, pairs, payload, X, m);
@@ -177,6 +177,7 @@ void fill_matrices(bool corrected, const Particles<D>& p, const PairList& pairs,
         for (int d = 0; d < D; ++d) store(op.sum.component(d) + s * lanes, c[D * D + d]);
       }
     }
+  });
   if (singular.load() < p.n) throw_singular(p, pairs, singular.load());
   if (shared) dictionary.finish(op.slice_code, op.slice_blocks);
 }

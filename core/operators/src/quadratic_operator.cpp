@@ -6,6 +6,7 @@
 #include <taut/base/describe.hpp>
 #include <taut/base/error.hpp>
 #include <taut/base/small_solve.hpp>
+#include <taut/base/parallel.hpp>
 #include <taut/operators/pair_vectors.hpp>
 #include <taut/operators/quadratic_operator.hpp>
 
@@ -35,13 +36,12 @@ class QuadraticFit {
         coefficients_(static_cast<std::size_t>(p.n)),
         signs_(p.mirror.empty() ? 0 : static_cast<std::size_t>(p.total), D) {
     std::atomic<Index> singular{p.n};
-#pragma omp parallel for schedule(dynamic, 512)
-    for (Index a = 0; a < p.n; ++a)
-      if (!fit(a, pairs)) {
-        Index seen = singular.load();
-        while (a < seen && !singular.compare_exchange_weak(seen, a)) {
-        }
+    parallel_for_dynamic(p.n, 512, true, [&](Index a) {
+      if (fit(a, pairs)) return;
+      Index seen = singular.load();
+      while (a < seen && !singular.compare_exchange_weak(seen, a)) {
       }
+    });
     if (singular.load() < p.n) throw_singular(singular.load(), pairs);
     if (!p.mirror.empty()) {
       std::fill(signs_.flat().begin(), signs_.flat().end(), 1.0);

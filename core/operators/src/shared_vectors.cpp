@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <taut/base/error.hpp>
+#include <taut/base/parallel.hpp>
 #include <taut/base/powers.hpp>
 #include <taut/operators/block_dictionary.hpp>
 #include <taut/operators/pair_payload.hpp>
@@ -157,8 +158,7 @@ void share_vectors(const Particles<D>& p, const PairList& pairs, const Kernel& k
   BlockDictionary dictionary(static_cast<std::size_t>(pairs.slots()), static_cast<std::size_t>(chunks),
                              D * lanes);
   const double support = kernel.radius_factor() * h;
-#pragma omp parallel for schedule(dynamic) if (chunks > 1)
-  for (Index c = 0; c < chunks; ++c)
+  parallel_for_dynamic(chunks, 1, chunks > 1, [&](Index c) {
     for_keys<D>(
         p, pairs, support, op.weight, c, [&](std::int64_t k, const BlockKey& key, const Pack(&r)[D], Pack w) {
           dictionary.put(static_cast<std::size_t>(c), static_cast<std::size_t>(k), key, [&](double* block) {
@@ -172,6 +172,7 @@ void share_vectors(const Particles<D>& p, const PairList& pairs, const Kernel& k
             }
           });
         });
+  });
   AlignedArray<Index> code;  // of each slot of the list
   dictionary.finish(code, op.blocks);
   mark_components<D>(op, code);

@@ -99,7 +99,7 @@ PatchFit<D> make_fit(const SimulationImpl<D>& s, double support_dx) {
 
 template <int D>
 StressRecovery<D>::StressRecovery(const Simulation<D>& simulation, double support_dx)
-    : simulation_(simulation.impl_.get()), fit_(make_fit(*simulation_, support_dx)) {}
+    : simulation_(&simulation.impl()), fit_(make_fit(*simulation_, support_dx)) {}
 
 template <int D>
 template <class F>

@@ -204,7 +204,7 @@ void write_vtkhdf(const std::string& file, const Simulation<D>& simulation) {
   for (std::size_t i = 0; i < n; ++i) {
     const Vec<D> x = simulation.position(i), u = simulation.displacement(i), v = simulation.velocity(i);
     // NaN rather than no file where a user's material does not say what is out of the plane.
-    const Mat<3> sigma = simulation.impl_->formulation->full_cauchy_stress(simulation.impl_->place(i));
+    const Mat<3> sigma = simulation.impl().formulation->full_cauchy_stress(simulation.impl().place(i));
     for (int r = 0; r < D; ++r) {
       xyz[3 * i + static_cast<std::size_t>(r)] = x[r];
       displacement.values[3 * i + static_cast<std::size_t>(r)] = u[r];

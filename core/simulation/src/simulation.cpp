@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cmath>
 #include <taut/base/error.hpp>
-#include <taut/base/small_solve.hpp>
 #include <taut/base/powers.hpp>
 #include <taut/formulations/assembly.hpp>
 #include <taut/formulations/auto_method.hpp>
@@ -15,6 +14,7 @@
 #include <taut/neighbors/search.hpp>
 #include <taut/operators/operators.hpp>
 #include <taut/particles/pair_rule.hpp>
+#include <taut/simulation/input_checks.hpp>
 #include <taut/simulation/rigid_modes.hpp>
 #include <taut/simulation/simulation_impl.hpp>
 
@@ -33,23 +33,27 @@ void check(const Method& method) {
   one_of("operators", method.operators, operator_names());
   one_of("kernel", method.kernel, Kernel::names());
   search_method(method.neighbours);
-  if (!(method.support_dx > 1) || method.support_dx > 20)
-    throw InputError(fmt::format("support_dx = {:g} must lie between 1 (nearest neighbours excluded) and 20",
-                                 method.support_dx));
-  const auto not_negative = [](const char* what, double value) {
-    if (!(value >= 0) || !std::isfinite(value))
-      throw InputError(fmt::format("{} = {:g} must not be negative", what, value));
-  };
-  not_negative("zero_energy_control", method.zero_energy_control.value_or(0));
-  not_negative("viscosity", method.viscosity);
-  not_negative("skin", method.skin);
+  check_values(method);
 }
+
+/// Marks a call that is under way.
+class Busy {
+ public:
+  Busy(const char*& busy, const char* what) : busy_(busy) { busy_ = what; }
+  ~Busy() { busy_ = nullptr; }
+  Busy(const Busy&) = delete;
+  Busy& operator=(const Busy&) = delete;
+
+ private:
+  const char*& busy_;
+};
 
 }  // namespace
 
 template <int D>
 std::vector<Index> SimulationImpl<D>::select_particles(const Where<D>& where, const char* what) const {
   must_be_open(what);
+  must_be_callable(what, "predicate", where);
   std::vector<Index> ids;
   for (std::size_t i = 0; i < cloud.size(); ++i)
     if (where(reference_position(i))) ids.push_back(static_cast<Index>(i));
@@ -70,7 +74,23 @@ auto SimulationImpl<D>::select(const Where<D>& where, const char* what) const ->
   return selected;
 }
 template <int D>
+std::size_t SimulationImpl<D>::known(std::size_t id) const {
+  if (id >= cloud.size())
+    throw InputError(fmt::format("particle {} is none of the {} of the cloud, which are numbered from 0", id,
+                                 cloud.size()));
+  return id;
+}
+template <int D>
+void SimulationImpl<D>::must_be_idle(const char* what) const {
+  if (busy)
+    throw InputError(
+        fmt::format("{}: not while the simulation is at {}, from a function that it calls. Ask the progress "
+                    "call to stop the run, and go on when it has returned",
+                    what, busy));
+}
+template <int D>
 void SimulationImpl<D>::must_be_open(const char* what) const {
+  must_be_idle(what);
   if (formulation)
     throw InputError(fmt::format("{}: set everything before the first run, relax or prepare", what));
 }
@@ -98,87 +118,76 @@ const Interfaces<D>* SimulationImpl<D>::met() const {
 
 template <int D>
 Simulation<D>::Simulation(Cloud<D> cloud, std::shared_ptr<const Material<D>> material, Method method)
-    : impl_(std::make_unique<SimulationImpl<D>>()) {
+    : impl_(std::make_shared<SimulationImpl<D>>()) {
   if (!material) throw InputError("a simulation needs a material");
+  check_cloud(cloud);
   method = complete(method, cloud, *material);
   check<D>(method);
-  if (cloud.size() == 0) throw InputError("the body has no particles");
-  if (!(cloud.dx > 0) || !std::isfinite(cloud.dx))
-    throw InputError(fmt::format("the cloud's spacing dx = {:g} must be positive", cloud.dx));
-  if (cloud.V.size() != cloud.size())
-    throw InputError(fmt::format("the cloud has {} positions but {} volumes", cloud.size(), cloud.V.size()));
-  if (!cloud.spacing.empty() && cloud.spacing.size() != cloud.size())
-    throw InputError(
-        fmt::format("the cloud has {} positions but {} spacings", cloud.size(), cloud.spacing.size()));
-  for (const double spacing : cloud.spacing)
-    if (!(spacing > 0) || !std::isfinite(spacing))
-      throw InputError(fmt::format("the cloud's spacings must be positive; one is {:g}", spacing));
-  if (!cloud.B.empty() && cloud.B.size() != cloud.size())
-    throw InputError(
-        fmt::format("the cloud has {} positions but {} boundary area vectors", cloud.size(), cloud.B.size()));
-  for (std::size_t q = 0; q < cloud.cells.size(); ++q)
-    for (const Index corner : cloud.cells[q])
-      if (corner < 0 || static_cast<std::size_t>(corner) >= cloud.size())
-        throw InputError(
-            fmt::format("corner {} of cell {} is none of the {} particles", corner, q, cloud.size()));
-  if (!cloud.cell_share.empty() && cloud.cell_share.size() != cloud.cells.size())
-    throw InputError(fmt::format("the cloud has {} cells but {} shares of them", cloud.cells.size(),
-                                 cloud.cell_share.size()));
-  for (const Facet<D>& facet : cloud.facets)
-    if (facet.owner < 0 || static_cast<std::size_t>(facet.owner) >= cloud.size())
-      throw InputError(
-          fmt::format("the owner {} of a facet is none of the {} particles", facet.owner, cloud.size()));
   // What the method has no use for.
   if (!needs_areas(method.operators)) cloud.facets = {};
   if (materials_meet(method.formulation) != MaterialsMeet::in_cells) {
     cloud.cells = {};
     cloud.cell_share = {};
   }
-  impl_->material.assign(cloud.size(), 0);
-  impl_->cloud = std::move(cloud);
-  make_local(impl_->cloud);
-  impl_->materials.push_back(std::move(material));
-  impl_->method = std::move(method);
+  impl().material.assign(cloud.size(), 0);
+  impl().cloud = std::move(cloud);
+  make_local(impl().cloud);
+  impl().materials.push_back(std::move(material));
+  impl().method = std::move(method);
 }
 template <int D>
 Simulation<D>::~Simulation() = default;
 template <int D>
 Simulation<D>::Simulation(Simulation&&) noexcept = default;
+template <int D>
+Simulation<D>& Simulation<D>::operator=(Simulation&&) noexcept = default;
+template <int D>
+SimulationImpl<D>& Simulation<D>::impl() const {
+  if (!impl_)
+    throw InputError("this simulation has been moved from: it is empty, and another one has its body");
+  return *impl_;
+}
 
 template <int D>
 Where<D> Simulation<D>::face(std::string_view name) const {
-  return impl_->cloud.facets.empty() ? on_face<D>(impl_->cloud, name) : on_facets<D>(impl_->cloud, name);
+  return impl().cloud.facets.empty() ? on_face<D>(impl().cloud, name) : on_facets<D>(impl().cloud, name);
 }
 
 template <int D>
 void Simulation<D>::set_material(const Where<D>& where, std::shared_ptr<const Material<D>> material) {
   if (!material) throw InputError("set_material: no material");
-  if (impl_->materials.size() == 255) throw InputError("set_material: at most 255 materials");
-  const auto number = static_cast<std::uint8_t>(impl_->materials.size());
-  const std::vector<Index> ids = impl_->select_particles(where, "set_material");
+  if (impl().materials.size() == 255) throw InputError("set_material: at most 255 materials");
+  const auto number = static_cast<std::uint8_t>(impl().materials.size());
+  const std::vector<Index> ids = impl().select_particles(where, "set_material");
   if (ids.empty()) throw InputError("set_material selects no particle");
-  for (const Index i : ids) impl_->material[static_cast<std::size_t>(i)] = number;
-  if (!impl_->interfaces && Interfaces<D>::known(impl_->cloud))
-    impl_->interfaces = std::make_unique<Interfaces<D>>(impl_->cloud);
-  if (impl_->interfaces) impl_->interfaces->assign(impl_->cloud, where, number);
-  impl_->materials.push_back(std::move(material));
+  std::shared_ptr<Interfaces<D>> interfaces;
+  if (impl().interfaces)
+    interfaces = std::make_shared<Interfaces<D>>(*impl().interfaces);
+  else if (Interfaces<D>::known(impl().cloud))
+    interfaces = std::make_shared<Interfaces<D>>(impl().cloud);
+  if (interfaces) interfaces->assign(impl().cloud, where, number);
+  impl().materials.push_back(std::move(material));
+  for (const Index i : ids) impl().material[static_cast<std::size_t>(i)] = number;
+  impl().interfaces = std::move(interfaces);
 }
 
 template <int D>
 void Simulation<D>::set_velocity(const std::function<Vec<D>(const Vec<D>&)>& velocity) {
-  impl_->must_be_open("set_velocity");
-  impl_->initial_velocity = velocity;
+  impl().must_be_open("set_velocity");
+  must_be_callable("set_velocity", "velocity", velocity);
+  impl().initial_velocity = velocity;
 }
 
 template <int D>
 void Simulation<D>::set_displacement(const std::function<Vec<D>(const Vec<D>&)>& displacement) {
-  impl_->must_be_open("set_displacement");
-  impl_->initial_displacement = displacement;
+  impl().must_be_open("set_displacement");
+  must_be_callable("set_displacement", "displacement", displacement);
+  impl().initial_displacement = displacement;
 }
 
 template <int D>
 void Simulation<D>::clamp(const Where<D>& where) {
-  impl_->conditions.push_back([impl = impl_.get(), selected = impl_->select(where, "clamp")] {
+  impl().conditions.push_back([impl = &impl(), selected = impl().select(where, "clamp")] {
     for (int d = 0; d < D; ++d) impl->hold(selected, d, {});
   });
 }
@@ -187,9 +196,8 @@ template <int D>
 void Simulation<D>::roller(const Where<D>& where, int axis) {
   if (axis < 0 || axis >= D)
     throw InputError(fmt::format("roller: axis {} is not one of 0 … {}", axis, D - 1));
-  impl_->conditions.push_back([impl = impl_.get(), axis, selected = impl_->select(where, "roller")] {
-    impl->hold(selected, axis, {});
-  });
+  impl().conditions.push_back(
+      [impl = &impl(), axis, selected = impl().select(where, "roller")] { impl->hold(selected, axis, {}); });
 }
 
 template <int D>
@@ -197,7 +205,8 @@ void Simulation<D>::prescribe(const Where<D>& where, int axis,
                               std::function<double(const Vec<D>&, double)> displacement) {
   if (axis < 0 || axis >= D)
     throw InputError(fmt::format("prescribe: axis {} is not one of 0 … {}", axis, D - 1));
-  impl_->conditions.push_back([impl = impl_.get(), axis, selected = impl_->select(where, "prescribe"),
+  must_be_callable("prescribe", "displacement", displacement);
+  impl().conditions.push_back([impl = &impl(), axis, selected = impl().select(where, "prescribe"),
                                f = std::move(displacement)] { impl->hold(selected, axis, f); });
 }
 
@@ -228,7 +237,7 @@ void SimulationImpl<D>::hold(const Selected& selected, int axis,
 template <int D>
 void Simulation<D>::load(const Where<D>& where, const Vec<D>& force, History history) {
   if (!force.allFinite()) throw InputError("load: the force is not finite");
-  impl_->conditions.push_back([impl = impl_.get(), selected = impl_->select(where, "load"), force,
+  impl().conditions.push_back([impl = &impl(), selected = impl().select(where, "load"), force,
                                history = std::move(history)] { impl->add_load(selected, force, history); });
 }
 
@@ -301,20 +310,21 @@ void SimulationImpl<D>::add_load(const Selected& selected, const Vec<D>& force, 
 
 template <int D>
 void Simulation<D>::body_force(const Vec<D>& acceleration, History history) {
-  impl_->must_be_open("body_force");
+  impl().must_be_open("body_force");
   if (!acceleration.allFinite()) throw InputError("body_force: the acceleration is not finite");
-  impl_->conditions.push_back([impl = impl_.get(), acceleration, history = std::move(history)] {
+  impl().conditions.push_back([impl = &impl(), acceleration, history = std::move(history)] {
     impl->loads.add_body_force(impl->particles.n, acceleration, history);
   });
 }
 
 template <int D>
 void Simulation<D>::symmetry_plane(int axis, double at) {
-  impl_->must_be_open("symmetry_plane");
+  impl().must_be_open("symmetry_plane");
   if (axis < 0 || axis >= D)
     throw InputError(fmt::format("symmetry_plane: axis {} is not one of 0 … {}", axis, D - 1));
-  const Cloud<D>& cloud = impl_->cloud;
-  for (const auto& period : impl_->periods)
+  if (!std::isfinite(at)) throw InputError(fmt::format("symmetry_plane: {:g} m is no place for a plane", at));
+  const Cloud<D>& cloud = impl().cloud;
+  for (const auto& period : impl().periods)
     if (period.axis == axis)
       throw InputError(fmt::format("symmetry_plane: the axis {} is periodic", "xyz"[axis]));
   double local = coordinate_difference(at, cloud.origin[axis]), sum = 0;
@@ -323,27 +333,35 @@ void Simulation<D>::symmetry_plane(int axis, double at) {
   if (cloud.origin[axis] != 0)
     for (const Vec<D>& X : cloud.X)
       if (std::abs(X[axis] - local) <= coordinate_rounding(at)) local = X[axis];
-  impl_->planes.push_back({axis, local, sum > 0 ? 0 : 1});
+  for (const auto& plane : impl().planes)
+    if (plane.axis == axis && std::abs(plane.at - local) < 1e-3 * cloud.dx)
+      throw InputError(fmt::format(
+          "symmetry_plane: there is one across {} at {:g} m already, and a body has one image beyond it",
+          "xyz"[axis], at));
+  impl().planes.push_back({axis, local, sum > 0 ? 0 : 1});
 }
 
 template <int D>
 void Simulation<D>::periodic(int axis, double low, double high) {
-  impl_->must_be_open("periodic");
+  impl().must_be_open("periodic");
   if (axis < 0 || axis >= D)
     throw InputError(fmt::format("periodic: axis {} is not one of 0 … {}", axis, D - 1));
   if (!(high > low) || !std::isfinite(high - low))
     throw InputError(fmt::format("periodic: the end {:g} must be above the beginning {:g}", high, low));
   const auto same = [axis](const auto& other) { return other.axis == axis; };
-  if (std::any_of(impl_->planes.begin(), impl_->planes.end(), same) ||
-      std::any_of(impl_->periods.begin(), impl_->periods.end(), same))
+  if (std::any_of(impl().planes.begin(), impl().planes.end(), same) ||
+      std::any_of(impl().periods.begin(), impl().periods.end(), same))
     throw InputError(
         fmt::format("periodic: the axis {} has a symmetry plane or a period already", "xyz"[axis]));
-  impl_->periods.push_back({axis, coordinate_difference(low, impl_->cloud.origin[axis]), high - low});
+  impl().periods.push_back({axis, coordinate_difference(low, impl().cloud.origin[axis]), high - low});
 }
 
 template <int D>
 void Simulation<D>::observe(double interval, std::function<void(double)> f) {
-  impl_->observers.push_back({interval, 0, std::move(f)});
+  if (!(interval >= 0) || !std::isfinite(interval))
+    throw InputError(fmt::format("observe: the interval {:g} s must not be negative", interval));
+  must_be_callable("observe", "observer", f);
+  impl().observers.push_back({interval, 0, std::move(f)});
 }
 
 namespace {
@@ -395,20 +413,18 @@ void SimulationImpl<D>::place_facets() {
 namespace {
 template <int D>
 void check_wave_speed(const Material<D>& material) {
-  const double speed = material.wave_speed();
-  if (!(speed > 0) || !std::isfinite(speed))
+  for (const double speed : {material.wave_speed(), material.wave_speed(1, 1, 1, 1)}) {
+    if (speed > 0 && std::isfinite(speed)) continue;
     throw InputError(
         fmt::format("material \"{}\" has the wave speed {:g} m/s, which must be positive and finite: "
                     "check its modulus and its density of {:g}",
                     material.name(), speed, material.density()));
+  }
 }
-}  // namespace
 
 template <int D>
-void Simulation<D>::prepare() {
-  if (impl_->formulation) return;
+void build(SimulationImpl<D>& s) {
   const auto start = std::chrono::steady_clock::now();
-  SimulationImpl<D>& s = *impl_;
   const bool areas_known = !s.cloud.B.empty() || !s.cloud.facets.empty();
   const Interfaces<D>* interfaces = s.met();
   const MaterialsMeet meet = materials_meet(s.method.formulation);
@@ -460,18 +476,62 @@ void Simulation<D>::prepare() {
       s.particles.v.template set_vec<D>(i, s.initial_velocity(s.particles.reference_position(i)));
   s.setup_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
+}  // namespace
+
+// All or nothing: what a build has changed when it throws is undone.
+template <int D>
+void Simulation<D>::prepare() {
+  const auto alive = impl_;
+  SimulationImpl<D>& s = impl();
+  s.must_be_idle("prepare");
+  if (s.formulation) return;
+  const Busy busy(s.busy, "prepare");
+  SimulationInput<D> before = s;
+  try {
+    build(s);
+  } catch (...) {
+    s.formulation.reset();
+    static_cast<SimulationBuilt<D>&>(s) = SimulationBuilt<D>{};
+    static_cast<SimulationInput<D>&>(s) = std::move(before);
+    throw;
+  }
+}
+
+template <int D>
+template <class Loop>
+RunResult SimulationImpl<D>::guarded(const char* what, Loop&& loop) {
+  if (!lost.empty()) throw RunError(fmt::format("{}: {}", what, lost));
+  const Busy now(busy, what);
+  try {
+    return loop();
+  } catch (const std::exception& error) {
+    recover(error.what());
+    throw;
+  } catch (...) {
+    recover("an exception that is no std::exception");
+    throw;
+  }
+}
+
+template <int D>
+void SimulationImpl<D>::recover(const char* error) {
+  if (mid_step)
+    lost = fmt::format(
+        "the simulation cannot go on: the step after t = {:g} s ended half way with an error ({}). Its state "
+        "can be looked at; make another one to go on",
+        time, error);
+  mid_step = false;
+}
 
 template <int D>
 void Simulation<D>::check_run(double duration, const RunOptions& options) {
-  if (!(duration >= 0) || !std::isfinite(duration))
-    throw InputError(fmt::format("run: the duration {:g} s must not be negative", duration));
-  if (!(options.cfl > 0) || !std::isfinite(options.cfl))
-    throw InputError(fmt::format("run: cfl = {:g} must be positive and finite", options.cfl));
+  impl().must_be_idle("run");
+  check_options(duration, options);
   make_integrator(options.integrator);
   prepare();
-  if (impl_->formulation->failure()) return;
-  const double end = impl_->time + duration;
-  const double bound = options.cfl * impl_->formulation->stable_step();
+  if (impl().formulation->failure()) return;
+  const double end = impl().time + duration;
+  const double bound = options.cfl * impl().formulation->stable_step();
   const double step = options.max_step > 0 ? std::min(bound, options.max_step) : bound;
   if (duration > 0 && !advances(end, step))
     throw InputError(
@@ -483,17 +543,17 @@ void Simulation<D>::check_run(double duration, const RunOptions& options) {
 template <int D>
 RunResult Simulation<D>::run(double duration, const RunOptions& options) {
   check_run(duration, options);
-  return integrate(*impl_, *make_integrator(options.integrator), duration, options);
+  const auto integrator = make_integrator(options.integrator);
+  const auto alive = impl_;
+  return alive->guarded("run", [&] { return integrate(*alive, *integrator, duration, options); });
 }
 
 template <int D>
 void Simulation<D>::check_relax(const RelaxOptions& options) {
-  if (!(options.tolerance > 0))
-    throw InputError(fmt::format("relax: tolerance = {:g} must be positive", options.tolerance));
-  if (!(options.cfl > 0) || !std::isfinite(options.cfl))
-    throw InputError(fmt::format("relax: cfl = {:g} must be positive and finite", options.cfl));
+  impl().must_be_idle("relax");
+  check_options(options);
   prepare();
-  const SimulationImpl<D>& s = *impl_;
+  const SimulationImpl<D>& s = impl();
   if (s.formulation->failure() || s.loads.empty()) return;
   const std::vector<double> times = relaxation_times(s, options);
   require_held<D>({s.particles, s.formulation->bodies(), s.constraints, s.loads, s.planes, s.periods,
@@ -503,42 +563,44 @@ void Simulation<D>::check_relax(const RelaxOptions& options) {
 template <int D>
 RunResult Simulation<D>::relax(const RelaxOptions& options) {
   check_relax(options);
-  return find_equilibrium(*impl_, options);
+  const auto alive = impl_;
+  return alive->guarded("relax", [&] { return find_equilibrium(*alive, options); });
 }
 
 template <int D>
 std::size_t Simulation<D>::size() const {
-  return impl_->cloud.size();
+  return impl().cloud.size();
 }
 template <int D>
 double Simulation<D>::dx() const {
-  return impl_->cloud.dx;
+  return impl().cloud.dx;
 }
 template <int D>
 double Simulation<D>::time() const {
-  return impl_->time;
+  return impl().time;
 }
 template <int D>
 const Method& Simulation<D>::method() const {
-  return impl_->method;
+  return impl().method;
 }
 template <int D>
 double Simulation<D>::setup_seconds() const {
-  return impl_->setup_seconds;
+  return impl().setup_seconds;
 }
 template <int D>
 Vec<D> Simulation<D>::reference_position(std::size_t id) const {
-  return impl_->reference_position(id);
+  return impl().reference_position(id);
 }
 
 template <int D>
 Vec<D> Simulation<D>::position(std::size_t id) const {
-  return impl_->cloud.origin + (impl_->cloud.X.at(id) + displacement(id));
+  return impl().cloud.origin + (impl().cloud.X[impl().known(id)] + displacement(id));
 }
 template <int D>
 Vec<D> Simulation<D>::displacement(std::size_t id) const {
-  if (!impl_->formulation) return Vec<D>::Zero();
-  return impl_->particles.u.template vec<D>(static_cast<std::size_t>(impl_->place(id)));
+  impl().known(id);
+  if (!impl().formulation) return Vec<D>::Zero();
+  return impl().particles.u.template vec<D>(static_cast<std::size_t>(impl().place(id)));
 }
 
 namespace {
@@ -551,25 +613,25 @@ auto& prepared(const Impl& impl) {
 
 template <int D>
 Vec<D> Simulation<D>::velocity(std::size_t id) const {
-  prepared(*impl_);
-  impl_->look();
-  return impl_->particles.v.template vec<D>(impl_->place(id));
+  prepared(impl());
+  impl().look();
+  return impl().particles.v.template vec<D>(impl().place(id));
 }
 template <int D>
 const Health& Simulation<D>::health() const {
-  prepared(*impl_);
-  return impl_->health;
+  prepared(impl());
+  return impl().health;
 }
 template <int D>
 Mat<D> Simulation<D>::cauchy_stress(std::size_t id) const {
-  return prepared(*impl_).cauchy_stress(impl_->place(id));
+  return prepared(impl()).cauchy_stress(impl().place(id));
 }
 template <int D>
 Mat<3> Simulation<D>::full_cauchy_stress(std::size_t id) const {
-  const Index i = impl_->place(id);
-  const Mat<3> sigma = prepared(*impl_).full_cauchy_stress(i);
+  const Index i = impl().place(id);
+  const Mat<3> sigma = prepared(impl()).full_cauchy_stress(i);
   const bool known = sigma.template topLeftCorner<D, D>().allFinite();
-  const Material<D>& material = *impl_->materials[impl_->material[id]];
+  const Material<D>& material = *impl().materials[impl().material[id]];
   for (int k = D; k < 3; ++k)
     if (known && std::isnan(sigma(k, k)))
       throw InputError(
@@ -581,54 +643,20 @@ Mat<3> Simulation<D>::full_cauchy_stress(std::size_t id) const {
 }
 template <int D>
 Mat<D> Simulation<D>::first_piola_kirchhoff(std::size_t id) const {
-  return prepared(*impl_).first_piola_kirchhoff(impl_->place(id));
+  return prepared(impl()).first_piola_kirchhoff(impl().place(id));
 }
 template <int D>
 Mat<D> Simulation<D>::deformation_gradient(std::size_t id) const {
-  return prepared(*impl_).deformation_gradient(impl_->place(id));
+  return prepared(impl()).deformation_gradient(impl().place(id));
 }
 template <int D>
 double Simulation<D>::mass(std::size_t id) const {
-  const double V = impl_->cloud.V.at(id);
-  const Interfaces<D>* interfaces = impl_->met();
-  if (!interfaces) return V * impl_->materials[impl_->material[id]]->density();
+  const double V = impl().cloud.V[impl().known(id)];
+  const Interfaces<D>* interfaces = impl().met();
+  if (!interfaces) return V * impl().materials[impl().material[id]]->density();
   double mass = 0;
-  for (const auto& part : interfaces->parts(id)) mass += part.V * impl_->materials[part.material]->density();
+  for (const auto& part : interfaces->parts(id)) mass += part.V * impl().materials[part.material]->density();
   return mass;
-}
-
-template <int D>
-Vec<D> Simulation<D>::displacement_at(const Vec<D>& X) const {
-  // Nearest particles first, until a plane through them is well determined.
-  const double dx = impl_->cloud.dx;
-  const Vec<D> at = coordinate_difference<D>(X, impl_->cloud.origin);
-  std::vector<std::pair<double, std::size_t>> near;
-  for (std::size_t i = 0; i < size(); ++i) {
-    const double r2 = (impl_->cloud.X[i] - at).squaredNorm();
-    if (r2 < 9 * dx * dx) near.emplace_back(r2, i);
-  }
-  std::sort(near.begin(), near.end());
-  if (near.empty()) throw InputError("displacement_at: no particle within three spacings of the point");
-  const double same = std::max(1e-6 * dx, coordinate_rounding(X.norm()));
-  if (near.front().first < same * same) return displacement(near.front().second);
-  // Not across slits.
-  if (const auto& rule = impl_->particles.rule)
-    std::erase_if(near, [&, nearest = impl_->place(near.front().second)](const auto& other) {
-      const Index i = impl_->place(other.second);
-      return i != nearest && !rule->same_body(nearest, i);
-    });
-  Fixed<D + 1> normal = Fixed<D + 1>::Zero();
-  Fixed<D + 1, D> right = Fixed<D + 1, D>::Zero();
-  for (const auto& [r2, i] : near) {
-    const double q2 = r2 / (9 * dx * dx);
-    const double weight = (1 - q2) * (1 - q2) * (1 - q2) * (1 - q2) / (r2 / (dx * dx) + 0.05);
-    Fixed<D + 1, 1> basis;
-    basis << 1, (impl_->cloud.X[i] - at) / dx;
-    normal += weight * basis * basis.transpose();
-    right += weight * basis * displacement(i).transpose();
-  }
-  if (!solve_small(normal, right)) return displacement(near.front().second);
-  return right.row(0).transpose();
 }
 
 template <int D>
@@ -639,7 +667,7 @@ double Simulation<D>::kinetic_energy() const {
 }
 template <int D>
 double Simulation<D>::strain_energy() const {
-  return prepared(*impl_).strain_energy();
+  return prepared(impl()).strain_energy();
 }
 template <int D>
 Vec<D> Simulation<D>::linear_momentum() const {
@@ -649,11 +677,11 @@ Vec<D> Simulation<D>::linear_momentum() const {
 }
 template <int D>
 std::int64_t Simulation<D>::pairs() const {
-  return prepared(*impl_).pairs();
+  return prepared(impl()).pairs();
 }
 template <int D>
 std::size_t Simulation<D>::bytes() const {
-  return prepared(*impl_).bytes() + prepared(*impl_).own_bytes() + impl_->particles.bytes();
+  return prepared(impl()).bytes() + prepared(impl()).own_bytes() + impl().particles.bytes();
 }
 
 template class Simulation<1>;

@@ -10,13 +10,20 @@ namespace taut {
 
 namespace {
 
-// Constraints, rates and accelerations of the present time.
+// Constraints, rates and accelerations of the present time. Where something throws the state is as it was.
 template <int D>
 void start(SimulationImpl<D>& s) {
-  s.formulation->constrain_positions(s.time);
-  s.formulation->constrain_velocities(s.time);
-  if (!s.formulation->evolved().empty()) s.formulation->update_rates(s.time);
-  s.formulation->update_accelerations(s.time);
+  const Field u = s.particles.u, v = s.particles.v;
+  try {
+    s.formulation->constrain_positions(s.time);
+    s.formulation->constrain_velocities(s.time);
+    if (!s.formulation->evolved().empty()) s.formulation->update_rates(s.time);
+    s.formulation->update_accelerations(s.time);
+  } catch (...) {
+    std::copy(u.flat().begin(), u.flat().end(), s.particles.u.flat().begin());
+    std::copy(v.flat().begin(), v.flat().end(), s.particles.v.flat().begin());
+    throw;
+  }
 }
 
 /// What both loops do around a step: count, keep time, look for breakdowns.
@@ -37,6 +44,7 @@ class Loop {
   /// Counts a step that ended at time t.
   void stepped(double t) {
     s_.time = t;
+    s_.step_ends();
     if (++result.steps % inspect_every == 0) s_.formulation->inspect();
     watch_.stepped(result.steps);
   }
@@ -190,6 +198,7 @@ RunResult integrate(SimulationImpl<D>& s, Integrator& integrator, double duratio
     // No sliver of a step that rounding has left.
     const bool last = s.time + dt >= end - 1e-6 * dt;
     if (last) dt = end - s.time;
+    s.step_begins();
     integrator.step(*s.formulation, s.time, dt);
     loop.stepped(last ? end : s.time + dt);
     notify(s);
@@ -203,6 +212,9 @@ RunResult integrate(SimulationImpl<D>& s, Integrator& integrator, double duratio
 template <int D>
 RunResult find_equilibrium(SimulationImpl<D>& s, const RelaxOptions& options) {
   const double start = s.time;
+  // Asked before anything changes, for histories may throw. Where nothing is applied and nothing will be,
+  // round-off must not be compared with round-off.
+  const bool left_alone = is_left_alone(s, relaxation_times(s, options));
   if (options.ramp_time > 0)
     s.loads.set_ramp([start, T = options.ramp_time](double t) {
       const double q = std::clamp((t - start) / T, 0.0, 1.0);
@@ -216,15 +228,16 @@ RunResult find_equilibrium(SimulationImpl<D>& s, const RelaxOptions& options) {
   while (!stopped && s.time - start < options.free_time && result.steps < options.max_steps &&
          loop.intact()) {
     const double dt = s.step_control.next(options.cfl * s.formulation->stable_step());
+    s.step_begins();
     undamped->step(*s.formulation, s.time, dt);
     loop.stepped(s.time + dt);
     stopped = loop.stopped(options.progress, 0);
   }
+  if (result.steps > 0) s.step_begins();
   undamped->complete(*s.formulation, s.time);
+  s.step_ends();
   Relaxation relaxation(*s.formulation);
   double largest = 0;
-  // Where nothing is applied and nothing will be, round-off must not be compared with round-off.
-  const bool left_alone = is_left_alone(s, relaxation_times(s, options));
   const double round_off = left_alone ? force_of_round_off(s) : 0;
   // A passing coincidence of small forces is no equilibrium: they must stay small.
   constexpr int in_a_row = 20;
@@ -235,6 +248,7 @@ RunResult find_equilibrium(SimulationImpl<D>& s, const RelaxOptions& options) {
       loop.give_up(dt == 0 && has_numbers(s.particles) ? "step too small to advance time" : "not a number");
       break;
     }
+    s.step_begins();
     relaxation.step(s.time, dt);
     loop.stepped(s.time + dt);
     largest = std::max(largest, relaxation.force_norm());

@@ -5,6 +5,7 @@
 #include <array>
 #include <span>
 #include <string_view>
+#include <taut/base/error.hpp>
 #include <taut/base/fields.hpp>
 #include <taut/neighbors/pair_list.hpp>
 #include <vector>
@@ -27,6 +28,12 @@ PointView<D> points_of(const Field& X, Index n) {
   return view;
 }
 
+/// Two points in one place, or nearly so.
+class CoincidentPoints : public InputError {
+ public:
+  using InputError::InputError;
+};
+
 enum class SearchMethod { cell_list, kd_tree };
 /// "cell_list" or "kd_tree". \throws InputError naming the valid ones.
 SearchMethod search_method(std::string_view name);
@@ -42,8 +49,8 @@ struct SearchOptions {
 /// double in this order. That is symmetric to the last bit and the same for both methods, whose lists are
 /// identical. Memory is O(points + pairs) whatever the extent of the points; any finite coordinates will do.
 /// \throws InputError for a coordinate that is not finite (particle named), a radius that is not positive and
-/// finite, coincident particles (nearer than 1e-12 radii; both named), or a list of more slots than an Index
-/// counts.
+/// finite, CoincidentPoints (nearer than 1e-12 radii; both named), or InputError for a list of more slots
+/// than an Index counts.
 template <int D>
 PairList find_pairs(PointView<D> points, double radius, SearchOptions options = {});
 

@@ -14,10 +14,10 @@
 #include <map>
 #include <memory>
 #include <taut/base/fields.hpp>
+#include <taut/base/parallel.hpp>
 #include <taut/neighbors/clusters.hpp>
 #include <taut/neighbors/encoded_slices.hpp>
 #include <taut/neighbors/pair_list_builder.hpp>
-#include <taut/neighbors/parallel.hpp>
 #include <taut/neighbors/point_check.hpp>
 #include <taut/neighbors/search.hpp>
 #include <taut/neighbors/slice_group.hpp>

@@ -5,10 +5,10 @@
 #include <atomic>
 #include <bit>
 #include <limits>
+#include <taut/base/parallel.hpp>
 #include <taut/neighbors/neighbourhood.hpp>
 #include <taut/neighbors/pair_list_builder.hpp>
 #include <taut/neighbors/pair_test.hpp>
-#include <taut/neighbors/parallel.hpp>
 #include <taut/neighbors/point_check.hpp>
 #include <taut/neighbors/slice_encoder.hpp>
 #include <utility>
@@ -95,9 +95,7 @@ PairList search_with(const PointView<D>& points, const Radii& radii) {
   alignas(64) std::atomic<Index> next_chunk{0};
   alignas(64) std::atomic<std::int64_t> slots{0};
   constexpr std::int64_t most_slots = std::numeric_limits<Index>::max();
-  ParallelError error;
-#pragma omp parallel if (worth_threads(points.n))
-  error.guard([&] {
+  on_threads(worth_threads(points.n), [&] {
     Search search(points, radii, clusters, searcher);
     PairListBuilder::Queue queue(builder);
     for (Index c = next_chunk++; c < builder.chunks(); c = next_chunk++) {
@@ -121,7 +119,6 @@ PairList search_with(const PointView<D>& points, const Radii& radii) {
     }
     queue.close();
   });
-  error.rethrow();
   if (first_coincident < points.n) throw_coincident(points, radii, first_coincident);
   PairListBuilder::check_slots(static_cast<double>(slots), points.n);
   return builder.build();

@@ -46,10 +46,12 @@ class HyperelasticForm : public Formulation<D> {
 
   double stable_step() const override {
     double ratio = 1;
-    for (const auto* material : materials_)
-      ratio =
-          std::max(ratio, material->wave_speed(stretch_.min, stretch_.max, stretch_.J_min, stretch_.J_max) /
-                              material->wave_speed());
+    for (const auto* material : materials_) {
+      const double now = material->wave_speed(stretch_.min, stretch_.max, stretch_.J_min, stretch_.J_max) /
+                         material->wave_speed();
+      if (std::isnan(now)) return now;
+      ratio = std::max(ratio, now);
+    }
     return 2 / (frequency_ * ratio);
   }
   double frequency() const override { return frequency_; }

@@ -9,8 +9,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <taut/base/disjoint_sets.hpp>
 #include <taut/base/error.hpp>
+#include <taut/base/parallel.hpp>
 #include <taut/base/simd.hpp>
 #include <taut/formulations/formulation.hpp>
 #include <taut/formulations/health_sweeps.hpp>
@@ -227,8 +229,8 @@ bool UpdatedLagrangian<D>::update_list() {
   try {
     list_.update(points());
     return true;
-  } catch (const InputError&) {
-    // Finite points that have no pair list coincide: report the pair of the last list that came closest.
+  } catch (const CoincidentPoints&) {
+    // Report the pair of the last list that came closest.
     Failure closest{"coincident particles", 0};
     double least = std::numeric_limits<double>::max();
     for (Index a = 0; a < p_.n; ++a)
@@ -240,6 +242,9 @@ bool UpdatedLagrangian<D>::update_list() {
         }
       });
     this->failure_ = closest;
+    return false;
+  } catch (const InputError& error) {
+    this->failure_ = Failure{std::string("no list of neighbours: ") + error.what(), 0};
     return false;
   }
 }
@@ -288,8 +293,7 @@ void UpdatedLagrangian<D>::update_rates(double) {
   if (!update_list()) return;
   const bool corrected = this->method_.velocity_gradient == "corrected";
   const double* m = p_.m.component(0);
-#pragma omp parallel for schedule(static) if (p_.n > parallel_from)
-  for (Index c = 0; c < groups_.chunks(); ++c) {
+  parallel_for(groups_.chunks(), p_.n > parallel_from, [&](Index c) {
     alignas(64) double L[D * D * chunk], trace[chunk];
     const Index first = groups_.first_slice(c), last = groups_.last_slice(c);
     for (Index s = first; s < last; ++s) {
@@ -358,14 +362,13 @@ void UpdatedLagrangian<D>::update_rates(double) {
     const double* rho = rho_.component(0) + begin;
     double* rate = rho_rate_.component(0) + begin;
     for (int i = 0; i < n; ++i) rate[i] = -rho[i] * trace[i];
-  }
+  });
 }
 
 template <int D>
 void UpdatedLagrangian<D>::update_stress() {
   Index broken = p_.n;
-#pragma omp parallel for schedule(static) reduction(min : broken) if (p_.n > parallel_from)
-  for (Index c = 0; c < groups_.chunks(); ++c) {
+  const auto of_chunk = [&](Index c, Index& first_broken) {
     const int n = (groups_.last_slice(c) - groups_.first_slice(c)) * lanes;
     const Index begin = groups_.first(c);
     alignas(64) double s_in[S * chunk], sigma[S * chunk];
@@ -385,8 +388,10 @@ void UpdatedLagrangian<D>::update_stress() {
       for (int i = 0; i < n; ++i) T[i] = sigma[k * chunk + i] / (rho[i] * rho_m[i]);
     }
     for (int i = 0; i < n; ++i)
-      if (!(rho[i] > 0 && rho_m[i] > 0)) broken = std::min<Index>(broken, begin + i);
-  }
+      if (!(rho[i] > 0 && rho_m[i] > 0)) first_broken = std::min<Index>(first_broken, begin + i);
+  };
+  parallel_for(groups_.chunks(), p_.n > parallel_from, p_.n, of_chunk,
+               [&](Index first_broken) { broken = std::min(broken, first_broken); });
   if (!p_.mirror.empty()) {
     p_.mirror.symmetric(T_);
     p_.mirror.scalars(rho_);

@@ -3,6 +3,7 @@
 /// Control of zero-energy modes for total Lagrangian forms by a penalty on pairs.
 
 #include <algorithm>
+#include <taut/base/parallel.hpp>
 #include <taut/kernels/kernel.hpp>
 #include <taut/neighbors/pair_list.hpp>
 #include <taut/operators/pair_payload.hpp>
@@ -28,8 +29,7 @@ class ZeroEnergyControl {
       : p_(p), pairs_(pairs), H_(static_cast<std::size_t>(p.total), D * D) {
     stiffness_ = AlignedArray<float>(static_cast<std::size_t>(pairs.slots()) * lanes);
     const double* V = p.V.component(0);
-#pragma omp parallel for schedule(dynamic, 64)
-    for (Index s = 0; s < pairs.slices(); ++s)
+    parallel_for_dynamic(pairs.slices(), 64, true, [&](Index s) {
       for (Index a = s * lanes; a < std::min<Index>((s + 1) * lanes, p.total); ++a)
         pairs.for_each(a, [&](Index b, std::int64_t k, int lane) {
           const double r = (p.X.template vec<D>(a) - p.X.template vec<D>(b)).norm();
@@ -38,6 +38,7 @@ class ZeroEnergyControl {
           stiffness_[static_cast<std::size_t>(k * lanes + lane)] =
               static_cast<float>(alpha * E * V2 * kernel.value(r, h * p.support_scale(a, b)) / (r * r));
         });
+    });
   }
 
   /// Keeps the displacement gradients of a slice for what follows.

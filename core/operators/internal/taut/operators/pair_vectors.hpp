@@ -2,6 +2,7 @@
 /// \file
 /// Storing pair vectors that are not antisymmetric.
 
+#include <taut/base/parallel.hpp>
 #include <taut/neighbors/pair_list.hpp>
 #include <taut/operators/operators.hpp>
 #include <taut/particles/particles.hpp>
@@ -15,8 +16,7 @@ void replace_pair_vectors(const Particles<D>& p, const PairList& pairs, const F&
                           AlignedArray<Real>& own_of_op, AlignedArray<Real>& adjoint_of_op) {
   const auto size = static_cast<std::size_t>(pairs.slots()) * D * lanes;
   AlignedArray<Real> own(size), adjoint(size);
-#pragma omp parallel for schedule(dynamic, 512)
-  for (Index a = 0; a < p.total; ++a) {
+  parallel_for_dynamic(p.total, 512, true, [&](Index a) {
     const Vec<D> Xa = p.X.template vec<D>(a);
     pairs.for_each(a, [&](Index b, std::int64_t k, int lane) {
       const std::pair<Vec<D>, Vec<D>> both = vectors(a, b, k, lane, Vec<D>(p.X.template vec<D>(b) - Xa));
@@ -26,7 +26,7 @@ void replace_pair_vectors(const Particles<D>& p, const PairList& pairs, const F&
         adjoint[at] = static_cast<Real>(both.second[d]);
       }
     });
-  }
+  });
   own_of_op = std::move(own);
   adjoint_of_op = std::move(adjoint);
 }

@@ -6,7 +6,9 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <taut/base/types.hpp>
 #include <taut/formulations/health.hpp>
 #include <taut/geometry/geometry.hpp>
@@ -51,8 +53,8 @@ using Progress = std::function<bool(std::int64_t steps, double time, double frac
 
 struct RunOptions {
   std::string integrator = "leapfrog";  ///< "leapfrog" or "central_difference"
-  double cfl = 0.6;                     ///< fraction of the CFL step
-  double max_step = 0;                  ///< upper bound of the step [s]; 0 = none
+  double cfl = 0.6;     ///< fraction of the stable step, 0 < cfl <= 1; more only beside a `max_step`
+  double max_step = 0;  ///< upper bound of the step [s]; 0 = none
   Progress progress{};
 };
 
@@ -83,9 +85,21 @@ template <int D>
 class Simulation;
 template <int D>
 void write_vtkhdf(const std::string& file, const Simulation<D>& simulation);
+template <int D>
+void read_field(const Simulation<D>& simulation, std::string_view name, std::span<double> out);
 
 /// One or more bodies under one method. Everything is set before the first `run` or `relax`; set-up
 /// (ordering, pair lists, operators) happens then, or when `prepare` is called.
+///
+/// Errors are `taut::Error`s; std::bad_alloc and what functions of the user's throw come out as they are. A
+/// call that throws leaves the simulation as it was before, with these exceptions. A run that ends with an
+/// error between two steps (out of an observer or a progress call) leaves the state of the last step. One
+/// that ends within a step (out of a material, a history, a prescribed displacement) leaves a state that
+/// can be looked at, but the simulation cannot go on and says so.
+///
+/// Functions that are called meanwhile may look at the simulation and add observers, but not set it up or
+/// run it. One that has been moved from can be assigned to and destroyed; every other call is an InputError.
+/// Ids are the indices of the cloud; others are an InputError.
 template <int D>
 class Simulation {
  public:
@@ -93,6 +107,7 @@ class Simulation {
   Simulation(Cloud<D> cloud, std::shared_ptr<const Material<D>> material, Method method);
   ~Simulation();
   Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
 
   /// The named face of the body's bounding box: "x_min" … "z_max": its outermost particles or, where the
   /// operators act through facets (`compatible`, `antisymmetric`) and the cloud has some, the facets there.
@@ -137,9 +152,9 @@ class Simulation {
   /// \throws InputError for what the parts refuse: particles that coincide or whose neighbours do not span
   /// the space, masses and stable steps that are no positive finite numbers.
   void prepare();
-  /// \throws InputError as `check_run`.
+  /// \throws InputError as `check_run`, RunError when an earlier error has left no state to go on from.
   RunResult run(double duration, const RunOptions& options = {});
-  /// \throws InputError as `check_relax`.
+  /// \throws InputError as `check_relax`, RunError as `run`.
   RunResult relax(const RelaxOptions& options = {});
   /// What `run` does before its first step. \throws InputError as `prepare`, for options out of range, and
   /// for steps too small ever to reach the end in the resolution of time (2^-53 of it).
@@ -148,7 +163,8 @@ class Simulation {
   /// for loads that set a body in a rigid motion that nothing holds: which body and which motions.
   void check_relax(const RelaxOptions& options = {});
   /// Calls `f(t)` at the start and after every `interval` seconds of simulated time (each step when 0) of
-  /// `run`.
+  /// `run`. Observers may add others, which see the same step. \throws InputError for an interval that is
+  /// negative or not finite.
   void observe(double interval, std::function<void(double t)> f);
 
   // State, in the user's order of particles.
@@ -171,6 +187,8 @@ class Simulation {
   /// particle). It extrapolates beyond the body, by up to three spacings from the nearest particle: asking
   /// for points that lie in it is up to the caller. \throws InputError farther out.
   Vec<D> displacement_at(const Vec<D>& X) const;
+  /// The same, to the last bit, for many points, in a time that hardly depends on the number of particles.
+  std::vector<Vec<D>> displacements_at(std::span<const Vec<D>> X) const;
 
   double kinetic_energy() const;   ///< [J]
   double strain_energy() const;    ///< [J]; hyperelastic total Lagrangian forms only
@@ -187,7 +205,9 @@ class Simulation {
  private:
   friend class StressRecovery<D>;
   friend void write_vtkhdf<D>(const std::string&, const Simulation<D>&);
-  std::unique_ptr<SimulationImpl<D>> impl_;
+  friend void read_field<D>(const Simulation<D>&, std::string_view, std::span<double>);
+  SimulationImpl<D>& impl() const;
+  std::shared_ptr<SimulationImpl<D>> impl_;  // a loop that runs keeps it alive
 };
 
 /// Fields of the present state as VTKHDF (ParaView): displacement, velocity, the whole Cauchy stress (nine

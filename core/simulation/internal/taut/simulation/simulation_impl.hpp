@@ -3,7 +3,9 @@
 /// What a Simulation is made of; shared by its set-up, its loops and its look at the state.
 
 #include <functional>
+#include <list>
 #include <memory>
+#include <string>
 #include <taut/boundary/constraints.hpp>
 #include <taut/boundary/loads.hpp>
 #include <taut/boundary/mirror.hpp>
@@ -18,45 +20,85 @@
 
 namespace taut {
 
+/// What a simulation is given.
 template <int D>
-struct SimulationImpl {
-  struct Observer {
-    double interval, next;
-    std::function<void(double)> f;
-  };
-
+struct SimulationInput {
   Cloud<D> cloud;  // in coordinates of its own, from cloud.origin; users see positions from theirs
   Method method;
   std::vector<std::shared_ptr<const Material<D>>> materials;
   std::vector<std::uint8_t> material;                // of each user's particle
-  std::unique_ptr<Interfaces<D>> interfaces;         // where cells are known and there are several materials
+  std::shared_ptr<const Interfaces<D>> interfaces;   // where cells are known and there are several materials
   std::vector<typename MirrorMap<D>::Plane> planes;  // in the cloud's coordinates
   std::vector<typename MirrorMap<D>::Period> periods;  // likewise
   std::vector<std::function<void()>> conditions;       // boundary conditions, applied when places are known
   std::function<Vec<D>(const Vec<D>&)> initial_velocity, initial_displacement;
-  std::vector<Observer> observers;
+};
 
+/// What its set-up makes of that. The formulation refers to what stands before it.
+template <int D>
+struct SimulationBuilt {
   Particles<D> particles;
   FacetRows<D> facet_rows;  // of the cloud's facets, once particles are in place
   Constraints<D> constraints;
   Loads<D> loads;
   std::unique_ptr<Formulation<D>> formulation;
+  double setup_seconds = 0;
+  Health health_of_setup, health;  // the latter with that of the last run
+};
+
+template <int D>
+struct SimulationImpl : SimulationInput<D>, SimulationBuilt<D> {
+  using SimulationInput<D>::cloud;
+  using SimulationInput<D>::method;
+  using SimulationInput<D>::materials;
+  using SimulationInput<D>::interfaces;
+  using SimulationInput<D>::planes;
+  using SimulationBuilt<D>::particles;
+  using SimulationBuilt<D>::facet_rows;
+  using SimulationBuilt<D>::constraints;
+  using SimulationBuilt<D>::loads;
+  using SimulationBuilt<D>::formulation;
+  struct Observer {
+    double interval, next;
+    std::function<void(double)> f;
+  };
+
+  std::list<Observer> observers;  // one may add another while it is called
   StepControl step_control;
   std::function<void()> complete_velocities;  // while a run leaves them at half steps
-  double time = 0, setup_seconds = 0;
-  Health health_of_setup, health;  // the latter with that of the last run
-  HealthBalance<D> balance;        // at the start of runs that conserve energy
+  double time = 0;
+  HealthBalance<D> balance;  // at the start of runs that conserve energy
+
+  const char* busy = nullptr;  // prepare, run or relax, while it lasts
+  mutable bool mid_step = false;
+  std::string lost;  // why there is no way on, if there is none
+
+  // What throws from here to `step_ends` leaves a state of no time.
+  void step_begins() { mid_step = true; }
+  void step_ends() { mid_step = false; }
+  /// Runs one of the loops. Where something throws before the first step the state is as it was, between two
+  /// steps it is that of the last; within a step it is lost, and so is the simulation.
+  template <class Loop>
+  RunResult guarded(const char* what, Loop&& loop);
+  void recover(const char* error);
 
   // To be called before velocities are read.
   void look() const {
-    if (complete_velocities) complete_velocities();
+    if (!complete_velocities) return;
+    mid_step = true;
+    complete_velocities();
+    mid_step = false;
   }
-  Index place(std::size_t id) const { return particles.place.at(id); }
-  Vec<D> reference_position(std::size_t id) const { return cloud.origin + cloud.X.at(id); }
+  /// Throws unless the user has such a particle.
+  std::size_t known(std::size_t id) const;
+  Index place(std::size_t id) const { return particles.place[known(id)]; }
+  Vec<D> reference_position(std::size_t id) const { return cloud.origin + cloud.X[known(id)]; }
   /// What a condition acts on: particles, and facets that none of them owns.
   struct Selected {
     std::vector<Index> particles, facets;
   };
+  // Throws while prepare, run or relax lasts.
+  void must_be_idle(const char* what) const;
   // Throws when a set-up call comes too late. Facets are selected by their centres.
   Selected select(const Where<D>& where, const char* what) const;
   std::vector<Index> select_particles(const Where<D>& where, const char* what) const;
