@@ -193,28 +193,26 @@ void Simulation<D>::roller(const Where<D>& where, int axis) {
 }
 
 template <int D>
-void Simulation<D>::prescribe(const Where<D>& where, int axis,
-                              std::function<double(const Vec<D>&, double)> displacement) {
+void SimulationImpl<D>::prescribe(const Where<D>& where, int axis, PrescribedMotion<D> motion) {
   if (axis < 0 || axis >= D)
     throw InputError(fmt::format("prescribe: axis {} is not one of 0 … {}", axis, D - 1));
-  impl_->conditions.push_back([impl = impl_.get(), axis, selected = impl_->select(where, "prescribe"),
-                               f = std::move(displacement)] { impl->hold(selected, axis, f); });
+  // Conditions know the user's coordinates.
+  conditions.push_back([this, axis, selected = select(where, "prescribe"),
+                        local = motion.seen_from(cloud.origin)] { hold(selected, axis, local); });
+}
+template <int D>
+void Simulation<D>::prescribe(const Where<D>& where, int axis, PointHistory<D> displacement,
+                              PointHistory<D> velocity) {
+  impl_->prescribe(where, axis, {std::move(displacement), std::move(velocity)});
+}
+template <int D>
+void Simulation<D>::prescribe(const Where<D>& where, int axis, History displacement, History velocity) {
+  impl_->prescribe(where, axis, {std::move(displacement), std::move(velocity)});
 }
 
 template <int D>
-void SimulationImpl<D>::hold(const Selected& selected, int axis,
-                             typename Constraints<D>::Displacement displacement) {
-  // Conditions know the user's coordinates.
-  if (displacement)
-    displacement = [f = std::move(displacement), origin = cloud.origin](const Vec<D>& X, double t) {
-      return f(origin + X, t);
-    };
-  if (!selected.particles.empty()) {
-    if (displacement)
-      constraints.prescribe(places(selected.particles), axis, displacement);
-    else
-      constraints.fix(places(selected.particles), axis);
-  }
+void SimulationImpl<D>::hold(const Selected& selected, int axis, const PrescribedMotion<D>& motion) {
+  if (!selected.particles.empty()) constraints.prescribe(places(selected.particles), axis, motion);
   std::vector<BoundPoint<D>> points;
   for (const Index f : selected.facets) {
     BoundPoint<D> point{cloud.facets[static_cast<std::size_t>(f)].centre, {}, f};
@@ -222,7 +220,7 @@ void SimulationImpl<D>::hold(const Selected& selected, int axis,
       point.terms.push_back({term.particle, (term.flips >> axis & 1) ? -term.weight : term.weight});
     points.push_back(std::move(point));
   }
-  if (!points.empty()) constraints.hold(std::move(points), axis, std::move(displacement));
+  if (!points.empty()) constraints.hold(std::move(points), axis, motion);
 }
 
 template <int D>
@@ -417,7 +415,7 @@ void Simulation<D>::prepare() {
       s.particles.u.template set_vec<D>(i, s.initial_displacement(s.particles.reference_position(i)));
   if (!s.particles.mirror.empty()) s.particles.mirror.vectors(s.particles.u);
   auto formulation = make_formulation<D>({s.particles, s.constraints, s.loads, s.method});
-  const double step = formulation->stable_step();
+  const double step = stable_step(leapfrog_limits, formulation->fastest());
   if (!(step > 0) || !std::isfinite(step))
     throw InputError(fmt::format(
         "the stable step of the body at rest is {:g} s: the highest frequency of its particles has no "
@@ -441,11 +439,11 @@ void Simulation<D>::check_run(double duration, const RunOptions& options) {
     throw InputError(fmt::format("run: the duration {:g} s must not be negative", duration));
   if (!(options.cfl > 0) || !std::isfinite(options.cfl))
     throw InputError(fmt::format("run: cfl = {:g} must be positive and finite", options.cfl));
-  make_integrator(options.integrator);
+  const StepLimits limits = make_integrator(options.integrator)->limits();
   prepare();
   if (impl_->formulation->failure()) return;
   const double end = impl_->time + duration;
-  const double bound = options.cfl * impl_->formulation->stable_step();
+  const double bound = options.cfl * stable_step(limits, impl_->formulation->fastest());
   const double step = options.max_step > 0 ? std::min(bound, options.max_step) : bound;
   if (duration > 0 && !advances(end, step))
     throw InputError(
@@ -457,7 +455,7 @@ void Simulation<D>::check_run(double duration, const RunOptions& options) {
 template <int D>
 RunResult Simulation<D>::run(double duration, const RunOptions& options) {
   check_run(duration, options);
-  return integrate(*impl_, *make_integrator(options.integrator), duration, options);
+  return integrate(*impl_, duration, options);
 }
 
 template <int D>
@@ -528,6 +526,11 @@ Vec<D> Simulation<D>::velocity(std::size_t id) const {
   prepared(*impl_);
   impl_->look();
   return impl_->particles.v.template vec<D>(impl_->place(id));
+}
+template <int D>
+Vec<D> Simulation<D>::acceleration(std::size_t id) const {
+  prepared(*impl_);
+  return impl_->particles.a.template vec<D>(impl_->place(id));
 }
 template <int D>
 const Health& Simulation<D>::health() const {
@@ -628,7 +631,8 @@ std::int64_t Simulation<D>::pairs() const {
 }
 template <int D>
 std::size_t Simulation<D>::bytes() const {
-  return prepared(*impl_).bytes() + prepared(*impl_).own_bytes() + impl_->particles.bytes();
+  return prepared(*impl_).bytes() + prepared(*impl_).own_bytes() + impl_->particles.bytes() +
+         (impl_->integrator ? impl_->integrator->bytes() : 0);
 }
 
 template class Simulation<1>;

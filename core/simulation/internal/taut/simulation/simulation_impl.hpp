@@ -2,8 +2,10 @@
 /// \file
 /// What a Simulation is made of; shared by its set-up, its loops and its look at the state.
 
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <string>
 #include <taut/boundary/constraints.hpp>
 #include <taut/boundary/loads.hpp>
 #include <taut/boundary/mirror.hpp>
@@ -17,6 +19,19 @@
 #include <vector>
 
 namespace taut {
+
+/// The time of the integrator: steps of one length are counted, not added up, so that it does not depend on
+/// where runs begin and end.
+struct StepClock {
+  double start = 0, step = 0;
+  std::int64_t count = 0;
+
+  double now() const { return start + static_cast<double>(count) * step; }
+  void advance(double dt) {
+    if (dt != step) *this = {now(), dt, 0};
+    ++count;
+  }
+};
 
 template <int D>
 struct SimulationImpl {
@@ -41,14 +56,18 @@ struct SimulationImpl {
   Loads<D> loads;
   std::unique_ptr<Formulation<D>> formulation;
   StepControl step_control;
-  std::function<void()> complete_velocities;  // while a run leaves them at half steps
+  // Of the last run, where its state is still the present one: another run goes on with it.
+  std::string integrator_name;
+  std::unique_ptr<Integrator> integrator;
+  StepClock clock;
   double time = 0, setup_seconds = 0;
+  double load_level = 0;           // the part of the loads that acts at the end of the last run or relaxation
   Health health_of_setup, health;  // the latter with that of the last run
   HealthBalance<D> balance;        // at the start of runs that conserve energy
 
   // To be called before velocities are read.
   void look() const {
-    if (complete_velocities) complete_velocities();
+    if (integrator) integrator->complete(*formulation, clock.now());
   }
   Index place(std::size_t id) const { return particles.place.at(id); }
   Vec<D> reference_position(std::size_t id) const { return cloud.origin + cloud.X.at(id); }
@@ -63,7 +82,8 @@ struct SimulationImpl {
   std::vector<Index> places(std::vector<Index> ids) const;  // all twins
   // The interfaces, if the method resolves them; else null.
   const Interfaces<D>* met() const;
-  void hold(const Selected& selected, int axis, typename Constraints<D>::Displacement displacement);
+  void prescribe(const Where<D>& where, int axis, PrescribedMotion<D> motion);
+  void hold(const Selected& selected, int axis, const PrescribedMotion<D>& motion);
   void add_load(const Selected& selected, const Vec<D>& force, History history);
   bool add_traction(const Selected& selected, const Vec<D>& force, const History& history);
   void place_facets();
@@ -77,8 +97,7 @@ std::vector<double> relaxation_times(const SimulationImpl<D>& simulation, const 
 
 /// Advances by `duration` [s]; the loop of Simulation::run.
 template <int D>
-RunResult integrate(SimulationImpl<D>& simulation, Integrator& integrator, double duration,
-                    const RunOptions& options);
+RunResult integrate(SimulationImpl<D>& simulation, double duration, const RunOptions& options);
 /// Relaxes to static equilibrium; the loop of Simulation::relax.
 template <int D>
 RunResult find_equilibrium(SimulationImpl<D>& simulation, const RelaxOptions& options);
