@@ -97,7 +97,7 @@ TEST_CASE("a run in many calls gives the bits of one") {
 
 TEST_CASE("a run of thousand calls keeps the energy as one does") {
   // T = 0.2 s in 4000 steps; central differences had forgotten half a kick in each call.
-  for (const auto& integrator : {"leapfrog", "central_difference"}) {
+  for (const std::string integrator : {"leapfrog", "central_difference"}) {
     CAPTURE(integrator);
     const RunOptions options{.integrator = integrator, .max_step = 0.2 / 4000};
     const auto block = [] {
@@ -218,12 +218,12 @@ TEST_CASE("a block that oscillates has the order of the integrator in time") {
     return state_of(s);
   };
   const State exact = after("ssp_rk3", 4096);
-  for (const auto& [integrator, order] : {std::pair{"leapfrog", 2}, {"tvd_rk2", 2}, {"ssp_rk3", 3}}) {
+  for (const std::string integrator : {"leapfrog", "tvd_rk2", "ssp_rk3"}) {
     CAPTURE(integrator);
     const double coarse = distance(after(integrator, 128), exact),
                  fine = distance(after(integrator, 256), exact);
     MESSAGE(integrator, ": order ", std::log2(coarse / fine), ", error ", fine);
-    CHECK(std::log2(coarse / fine) == doctest::Approx(order).epsilon(0.05));
+    CHECK(std::log2(coarse / fine) == doctest::Approx(integrator == "ssp_rk3" ? 3 : 2).epsilon(0.05));
   }
 }
 
@@ -239,26 +239,25 @@ TEST_CASE("updated Lagrangian bodies have the order of Runge-Kutta schemes") {
     return state_of(s);
   };
   const State exact = after("ssp_rk3", 2048);
-  for (const auto& [integrator, order] : {std::pair{"tvd_rk2", 2}, {"ssp_rk3", 3}}) {
+  for (const std::string integrator : {"tvd_rk2", "ssp_rk3"}) {
     CAPTURE(integrator);
     const double coarse = distance(after(integrator, 64), exact),
                  fine = distance(after(integrator, 128), exact);
     MESSAGE(integrator, ": order ", std::log2(coarse / fine), ", error ", fine);
-    CHECK(std::log2(coarse / fine) == doctest::Approx(order).epsilon(0.05));
+    CHECK(std::log2(coarse / fine) == doctest::Approx(integrator == "ssp_rk3" ? 3 : 2).epsilon(0.05));
   }
 }
 
 TEST_CASE("bodies stay bounded up to the step that is stated, and no farther") {
-  for (const auto& integrator : {"leapfrog", "ssp_rk3"}) {
+  for (const std::string integrator : {"leapfrog", "ssp_rk3"}) {
     CAPTURE(integrator);
     const auto bounded = [&](double cfl) {
-      Simulation<2> s(brick<2>(6), make_material<2>("neo_hookean", {.E = 1e6, .nu = 0.3, .density = 1000}),
+      // In 1D the frequency that the form states is that of its highest mode; elsewhere it may be a bound.
+      Simulation<1> s(make_cloud(box<1>(Vec<1>(0), Vec<1>(1)), {.dx = 0.05}),
+                      make_material<1>("neo_hookean", {.E = 1e6, .nu = 0.3, .density = 1000}),
                       {.formulation = "tl_displacement", .pair_precision = PairPrecision::double_precision});
       // Small and rough: all modes, and no other state than rest.
-      s.set_velocity([](const Vec<2>& X) {
-        return Vec<2>(1e-6 * std::sin(40 * X.sum() + 70 * X[0]),
-                      1e-6 * std::sin(40 * X.sum() + 70 * X[1] + 1));
-      });
+      s.set_velocity([](const Vec<1>& X) { return Vec<1>(1e-6 * std::sin(1000 * X[0] * X[0])); });
       s.prepare();
       const double energy = s.kinetic_energy();
       const auto few = [](std::int64_t steps, double, double) { return steps < 3000; };
@@ -300,6 +299,7 @@ TEST_CASE("relaxation: a second ramp does not unload, one that was stopped does 
   };
   CHECK(twice.relax({.tolerance = 1e-8, .ramp_time = ramp, .progress = watch}).status == Status::ok);
   CHECK(least == doctest::Approx(u).epsilon(1e-4));
+  CHECK(twice.relax({.tolerance = 1e-8, .ramp_time = 1e9}).status == Status::ok);  // nothing to wait for
 
   // After a run that had all loads there is nothing to ramp up either.
   auto after_run = beam();
@@ -359,7 +359,7 @@ TEST_CASE("prescribed motion: histories of all and of each particle, never befor
   for (auto* s : {&one, &two, &three}) {
     CHECK(s->run(10 * step, {.max_step = step}).status == Status::ok);
     CHECK(s->displacement(7)[0] == u(s->time()));
-    CHECK(s->velocity(7)[0] == doctest::Approx(0.5 * std::cos(50 * s->time())).epsilon(1e-9));
+    CHECK(s->velocity(7)[0] == doctest::Approx(0.5 * std::cos(50 * s->time())).epsilon(1e-8));
   }
   CHECK(three.velocity(7)[0] == 0.5 * std::cos(50 * (10 * step)));
   CHECK(state_of(one) == state_of(two));

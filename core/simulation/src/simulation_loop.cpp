@@ -119,14 +119,16 @@ template <int D>
 class Ramp {
  public:
   Ramp(SimulationImpl<D>& s, double duration)
-      : s_(s), start_(s.time), duration_(duration), from_(s.load_level) {
-    if (duration > 0 && from_ < 1) s.loads.set_ramp([this](double t) { return level(t); });
+      : s_(s), start_(s.time), duration_(s.load_level < 1 ? duration : 0), from_(s.load_level) {
+    if (duration_ > 0) s.loads.set_ramp([this](double t) { return level(t); });
   }
   ~Ramp() {
     s_.load_level = level(s_.time);
     s_.loads.set_ramp({});
     s_.integrator.reset();  // whose rates were those of the ramp
   }
+  /// When all loads act [s].
+  double end() const { return start_ + duration_; }
   Ramp(const Ramp&) = delete;
   Ramp& operator=(const Ramp&) = delete;
 
@@ -286,7 +288,7 @@ RunResult find_equilibrium(SimulationImpl<D>& s, const RelaxOptions& options) {
     result.remaining_motion = relaxation.remaining_motion();
     // Nothing has moved yet, but will.
     const bool waits = scale == 0 && !left_alone;
-    const bool small = !waits && s.time - start >= options.ramp_time &&
+    const bool small = !waits && s.time >= ramp.end() &&
                        ((left_alone && relaxation.force_norm() <= round_off) ||
                         (result.residual <= options.tolerance &&
                          (result.remaining_motion <= RelaxOptions::still_moving || result.residual == 0)));
