@@ -134,10 +134,9 @@ void apply(Simulation<D>& simulation, const BoundarySpec& boundary, Bounds<D> bo
   } else if (boundary.type == "roller") {
     simulation.roller(where, boundary.axis);
   } else if (boundary.type == "prescribed") {
-    simulation.prescribe(where, boundary.axis,
-                         [u = boundary.displacement, h = history_of(boundary)](const Vec<D>&, double t) {
-                           return h ? u * h(t) : u;
-                         });
+    simulation.prescribe(
+        where, boundary.axis,
+        [u = boundary.displacement, h = history_of(boundary)](double t) { return h ? u * h(t) : u; });
   } else if (boundary.type == "load") {
     simulation.load(where, force_of(boundary, point) * vec<D>(boundary.direction).stableNormalized(),
                     history_of(boundary));

@@ -1,6 +1,7 @@
 #include <lib/names.hpp>
 #include <taut/formulations/auto_method.hpp>
 #include <taut/formulations/formulation.hpp>
+#include <taut/integrators/integrator.hpp>
 #include <taut/kernels/kernel.hpp>
 #include <taut/materials/material.hpp>
 #include <taut/operators/operators.hpp>
@@ -8,9 +9,8 @@
 namespace taut::bench {
 
 const Names& names() {
-  static const Names all = {formulation_names(),      operator_names(),
-                            Kernel::names(),          material_names(),
-                            {"cell_list", "kd_tree"}, {"leapfrog", "central_difference"}};
+  static const Names all = {formulation_names(), operator_names(),         Kernel::names(),
+                            material_names(),    {"cell_list", "kd_tree"}, integrator_names()};
   return all;
 }
 

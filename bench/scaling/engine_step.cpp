@@ -52,21 +52,13 @@ EngineStep<D>::EngineStep(Cloud<D> cloud, const Method& method)
   } else {
     simulation_.set_displacement(start_displacement<D>);
   }
-  // The first step of central differences leaves half a step's kick in the velocities of a body that was at
-  // rest.
-  const RunOptions one_step{.integrator = "central_difference",
-                            .cfl = cfl,
-                            .max_step = 0,
-                            .progress = [](std::int64_t, double, double) { return false; }};
-  simulation_.prepare();
+  const RunOptions one_step{
+      .integrator = "leapfrog", .cfl = cfl, .max_step = 0, .progress = [](std::int64_t, double, double) {
+        return false;
+      }};
+  simulation_.run(0);
+  for (std::size_t i = 0; i < simulation_.size(); ++i) start_.push_back(simulation_.acceleration(i));
   dt_ = simulation_.run(forever, one_step).time;
-}
-
-template <int D>
-std::vector<Vec<D>> EngineStep<D>::start_accelerations() const {
-  std::vector<Vec<D>> a(simulation_.size());
-  for (std::size_t i = 0; i < a.size(); ++i) a[i] = simulation_.velocity(i) * (2 / dt_);
-  return a;
 }
 
 template <int D>

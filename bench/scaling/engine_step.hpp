@@ -29,9 +29,8 @@ class EngineStep {
   /// Particle-steps a second with `threads` threads, after one step that is not counted.
   /// \throws RunError when the body breaks.
   double rate(int threads, double least_seconds);
-  /// Accelerations of the state that the body started in, in the order of the cloud [m/s^2]; known until
-  /// `rate` is called. Total Lagrangian bodies only, which start at rest.
-  std::vector<Vec<D>> start_accelerations() const;
+  /// Accelerations of the state that the body started in, in the order of the cloud [m/s^2].
+  const std::vector<Vec<D>>& start_accelerations() const { return start_; }
   /// Length of the first step [s].
   double step() const { return dt_; }
 
@@ -46,6 +45,7 @@ class EngineStep {
   bool updated_;
   double dx_;
   Simulation<D> simulation_;
+  std::vector<Vec<D>> start_;
   double dt_ = 0;
   std::int64_t rebuilds_ = 0;
 };

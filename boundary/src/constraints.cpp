@@ -9,13 +9,13 @@ void Constraints<D>::fix(std::vector<Index> particles, int axis) {
 }
 
 template <int D>
-void Constraints<D>::prescribe(std::vector<Index> particles, int axis, Displacement displacement) {
-  sets_.push_back({std::move(particles), axis, std::move(displacement)});
+void Constraints<D>::prescribe(std::vector<Index> particles, int axis, PrescribedMotion<D> motion) {
+  sets_.push_back({std::move(particles), axis, std::move(motion)});
 }
 
 template <int D>
-void Constraints<D>::hold(std::vector<BoundPoint<D>> points, int axis, Displacement displacement) {
-  held_[static_cast<std::size_t>(axis)].add(std::move(points), std::move(displacement));
+void Constraints<D>::hold(std::vector<BoundPoint<D>> points, int axis, PrescribedMotion<D> motion) {
+  held_[static_cast<std::size_t>(axis)].add(std::move(points), std::move(motion));
 }
 
 template <int D>
@@ -31,31 +31,24 @@ void Constraints<D>::finish(const Field& mass) {
 }
 
 template <int D>
-void Constraints<D>::apply_to_displacements(double t, const Field& X, Field& u) const {
+template <class Now>
+void Constraints<D>::apply(const Field& X, Field& field, Now&& now) const {
   for (const Set& set : sets_) {
-    double* us = u.component(set.axis);
-    for (const Index i : set.particles) us[i] = set.displacement ? set.displacement(X.vec<D>(i), t) : 0;
+    double* values = field.component(set.axis);
+    const auto value = now(set.motion);
+    for (const Index i : set.particles) values[i] = value(X.vec<D>(i));
   }
-  for (int d = 0; d < D; ++d)
-    held_[static_cast<std::size_t>(d)].project(
-        u.component(d),
-        [&](const Vec<D>& point, const Displacement& follow) { return follow ? follow(point, t) : 0; });
+  for (int d = 0; d < D; ++d) held_[static_cast<std::size_t>(d)].project(field.component(d), now);
+}
+
+template <int D>
+void Constraints<D>::apply_to_displacements(double t, const Field& X, Field& u) const {
+  apply(X, u, [t](const PrescribedMotion<D>& motion) { return motion.displacement(t); });
 }
 
 template <int D>
 void Constraints<D>::apply_to_velocities(double t, const Field& X, Field& v, double window) const {
-  const double after = t + window, before = t - window;
-  const auto velocity = [&](const Displacement& follow, const Vec<D>& at) {
-    return follow ? (follow(at, after) - follow(at, before)) / (after - before) : 0;
-  };
-  for (const Set& set : sets_) {
-    double* vs = v.component(set.axis);
-    for (const Index i : set.particles) vs[i] = velocity(set.displacement, X.vec<D>(i));
-  }
-  for (int d = 0; d < D; ++d)
-    held_[static_cast<std::size_t>(d)].project(
-        v.component(d),
-        [&](const Vec<D>& point, const Displacement& follow) { return velocity(follow, point); });
+  apply(X, v, [t, window](const PrescribedMotion<D>& motion) { return motion.velocity(t, window); });
 }
 
 template <int D>
@@ -65,8 +58,8 @@ void Constraints<D>::apply_to_accelerations(Field& a) const {
     for (const Index i : set.particles) as[i] = 0;
   }
   for (int d = 0; d < D; ++d)
-    held_[static_cast<std::size_t>(d)].project(a.component(d),
-                                               [](const Vec<D>&, const Displacement&) { return 0.0; });
+    held_[static_cast<std::size_t>(d)].project(
+        a.component(d), [](const PrescribedMotion<D>&) { return typename PrescribedMotion<D>::Now(); });
 }
 
 template <int D>
@@ -80,20 +73,18 @@ std::vector<std::uint8_t> Constraints<D>::held(Index n) const {
 
 template <int D>
 bool Constraints<D>::move_later(double t, std::span<const double> times, const Field& X) const {
-  for (const Set& set : sets_) {
-    if (!set.displacement) continue;
-    for (const Index i : set.particles) {
-      const Vec<D> Xi = X.vec<D>(i);
-      const double now = set.displacement(Xi, t);
-      for (const double later : times)
-        if (set.displacement(Xi, later) != now) return true;
-    }
-  }
+  const auto differs = [&](const PrescribedMotion<D>& motion, const Vec<D>& at) {
+    return motion.moves() && std::any_of(times.begin(), times.end(), [&](double later) {
+             return motion.displacement(later)(at) != motion.displacement(t)(at);
+           });
+  };
+  for (const Set& set : sets_)
+    for (const Index i : set.particles)
+      if (differs(set.motion, X.vec<D>(i))) return true;
   bool moves = false;
   for (const HeldPoints<D>& held : held_)
-    held.for_each([&](const BoundPoint<D>& point, const Displacement& follow) {
-      if (follow)
-        for (const double later : times) moves = moves || follow(point.X, later) != follow(point.X, t);
+    held.for_each([&](const BoundPoint<D>& point, const PrescribedMotion<D>& motion) {
+      moves = moves || differs(motion, point.X);
     });
   return moves;
 }

@@ -12,6 +12,8 @@ struct HeldPoints<D>::System {
   Eigen::SparseMatrix<double> from_points;                     // M^-1 C^T, a column a point
   std::vector<Index> particles;                                // of its rows
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors;  // of C M^-1 C^T
+  Eigen::VectorXd per_pivot;                                   // 1 / D of these
+  Eigen::VectorXd ordered, force, change;                      // of the last projection
 };
 
 template <int D>
@@ -24,8 +26,8 @@ template <int D>
 HeldPoints<D>& HeldPoints<D>::operator=(HeldPoints&&) noexcept = default;
 
 template <int D>
-void HeldPoints<D>::add(std::vector<BoundPoint<D>> points, Displacement displacement) {
-  displacements_.push_back(std::move(displacement));
+void HeldPoints<D>::add(std::vector<BoundPoint<D>> points, PrescribedMotion<D> motion) {
+  motions_.push_back(std::move(motion));
   for (BoundPoint<D>& point : points) {
     const auto [at, is_new] = place_.try_emplace(point.number, points_.size());
     const std::size_t k = at->second;
@@ -34,7 +36,7 @@ void HeldPoints<D>::add(std::vector<BoundPoint<D>> points, Displacement displace
       set_.emplace_back();
     }
     points_[k] = std::move(point);
-    set_[k] = displacements_.size() - 1;
+    set_[k] = motions_.size() - 1;
   }
 }
 
@@ -58,6 +60,8 @@ void HeldPoints<D>::factor(const Field& mass, const std::vector<char>& fixed) {
     }
     if (free) row_point_.push_back(k);
   }
+  now_.resize(motions_.size());
+  defect_.resize(row_point_.size());
   if (row_point_.empty()) return;
   const auto points = static_cast<Eigen::Index>(row_point_.size());
   const auto particles = static_cast<Eigen::Index>(system_->particles.size());
@@ -77,16 +81,25 @@ void HeldPoints<D>::factor(const Field& mass, const std::vector<char>& fixed) {
         "the {} points held on the boundary do not move independently: where walls meet, or in a body one "
         "particle thick, they hold the same particles twice. Hold fewer of them, or refine dx there",
         points));
+  system_->per_pivot = system_->factors.vectorD().cwiseInverse();
+  system_->ordered.resize(points);
+  system_->force.resize(points);
+  system_->change.resize(particles);
 }
 
+// As Eigen solves, but for the memory that it takes to reorder.
 template <int D>
-void HeldPoints<D>::correct(const std::vector<double>& defect, double* values) const {
-  if (defect.empty()) return;
-  const Eigen::Map<const Eigen::VectorXd> right(defect.data(), static_cast<Eigen::Index>(defect.size()));
-  const Eigen::VectorXd force = system_->factors.solve(right);
-  const Eigen::VectorXd change = system_->from_points * force;
-  for (std::size_t c = 0; c < system_->particles.size(); ++c)
-    values[system_->particles[c]] += change[static_cast<Eigen::Index>(c)];
+void HeldPoints<D>::correct(double* values) const {
+  System& s = *system_;
+  const auto& place = s.factors.permutationP().indices();
+  for (Eigen::Index r = 0; r < place.size(); ++r) s.ordered[place[r]] = defect_[static_cast<std::size_t>(r)];
+  s.factors.matrixL().solveInPlace(s.ordered);
+  s.ordered.array() *= s.per_pivot.array();
+  s.factors.matrixU().solveInPlace(s.ordered);
+  for (Eigen::Index r = 0; r < place.size(); ++r) s.force[r] = s.ordered[place[r]];
+  s.change.noalias() = s.from_points * s.force;
+  for (std::size_t c = 0; c < s.particles.size(); ++c)
+    values[s.particles[c]] += s.change[static_cast<Eigen::Index>(c)];
 }
 
 template class HeldPoints<1>;

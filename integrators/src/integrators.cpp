@@ -1,56 +1,54 @@
 #include <taut/base/error.hpp>
 #include <taut/integrators/integrator.hpp>
-#include <taut/integrators/vector_ops.hpp>
+#include <taut/integrators/leapfrog.hpp>
+#include <taut/integrators/runge_kutta.hpp>
+#include <utility>
 
 namespace taut {
 
 namespace {
 
-// Positions, constraints and evolved variables of time t, moved by the half-step velocity in `system`.
-void after_drift(Dynamics& system, double t, double dt) {
-  system.constrain_positions(t);
-  const auto evolved = system.evolved();
-  if (!evolved.empty()) {
-    system.update_rates(t);
-    for (const Evolved& e : evolved) add_scaled(e.value, dt, e.rate);
-  }
-  system.update_accelerations(t);
+std::unique_ptr<Integrator> make_leapfrog() { return std::make_unique<Leapfrog>(); }
+
+std::vector<IntegratorEntry>& registry() {
+  static std::vector<IntegratorEntry> entries = {
+      {"leapfrog", "kick-drift-kick, symplectic, second order; the cheapest", make_leapfrog},
+      {"central_difference", "the same scheme by its other name", make_leapfrog},
+      {"tvd_rk2", "Runge-Kutta of second order (Shu & Osher); undamped oscillations grow slowly",
+       make_tvd_rk2},
+      {"ssp_rk3", "Runge-Kutta of third order (Shu & Osher)", make_ssp_rk3},
+  };
+  return entries;
 }
 
-// Velocities live at half steps: v_{n+1/2} = v_{n-1/2} + a_n (dt_{n-1} + dt_n) / 2.
-class CentralDifference : public Integrator {
- public:
-  void step(Dynamics& system, double t, double dt) override {
-    kick_drift(system.positions(), system.velocities(), system.accelerations(), owed_ + dt / 2, dt);
-    system.constrain_velocities(t + dt / 2);
-    after_drift(system, t + dt, dt);
-    owed_ = dt / 2;
-  }
-
- protected:
-  double owed_ = 0;  // what velocities lag behind positions
-};
-
-// The kick that ends a step and the one that begins the next are one, unless somebody looks in between.
-class Leapfrog final : public CentralDifference {
- public:
-  void complete(Dynamics& system, double t) override {
-    if (owed_ == 0) return;
-    add_scaled(system.velocities(), owed_, system.accelerations());
-    system.constrain_velocities(t);
-    owed_ = 0;
-  }
-};
+const IntegratorEntry* look_up(std::string_view name) {
+  for (const IntegratorEntry& entry : registry())
+    if (entry.name == name) return &entry;
+  return nullptr;
+}
 
 }  // namespace
 
-std::vector<std::string> integrator_names() { return {"leapfrog", "central_difference"}; }
+const std::vector<IntegratorEntry>& integrators() { return registry(); }
+
+std::vector<std::string> integrator_names() {
+  std::vector<std::string> names;
+  for (const IntegratorEntry& entry : registry()) names.push_back(entry.name);
+  return names;
+}
 
 std::unique_ptr<Integrator> make_integrator(std::string_view name) {
-  if (name == "leapfrog") return std::make_unique<Leapfrog>();
-  if (name == "central_difference") return std::make_unique<CentralDifference>();
+  if (const IntegratorEntry* entry = look_up(name)) return entry->make();
   throw InputError("unknown integrator \"" + std::string(name) +
                    "\"; valid: " + join_names(integrator_names()));
+}
+
+void register_integrator(IntegratorEntry entry) {
+  if (entry.name.empty()) throw InputError("register_integrator: it needs a name");
+  if (!entry.make) throw InputError("register_integrator: nothing makes \"" + entry.name + "\"");
+  if (look_up(entry.name))
+    throw InputError("register_integrator: there is an integrator \"" + entry.name + "\" already");
+  registry().push_back(std::move(entry));
 }
 
 }  // namespace taut

@@ -2,12 +2,18 @@
 #include <cmath>
 #include <taut/integrators/relax.hpp>
 #include <taut/integrators/vector_ops.hpp>
-#include <vector>
 
 namespace taut {
 
+namespace {
+constexpr std::size_t block = 4096;
+}
+
 Relaxation::Relaxation(Dynamics& system)
-    : system_(system), start_(system.positions().size()), previous_(system.positions().size()) {
+    : system_(system),
+      start_(system.positions().size()),
+      previous_(system.positions().size()),
+      partial_((start_.size() + block - 1) / block) {
   std::copy(system.positions().begin(), system.positions().end(), start_.begin());
 }
 
@@ -17,6 +23,7 @@ void Relaxation::step(double t, double dt) {
   const auto a = system_.accelerations();
   const auto m = system_.masses();
   const auto n = static_cast<std::int64_t>(x.size());
+  system_.begin_step(t, dt);
   std::copy(a.begin(), a.end(), previous_.begin());
 
   const double keep = (1 - damping_ * dt / 2) / (1 + damping_ * dt / 2);
@@ -28,33 +35,28 @@ void Relaxation::step(double t, double dt) {
   }
   system_.constrain_velocities(t + dt / 2);
   system_.constrain_positions(t + dt);
-  const auto evolved = system_.evolved();
-  if (!evolved.empty()) {
+  if (!system_.others().empty()) {
     system_.update_rates(t + dt);
-    for (const Evolved& e : evolved) add_scaled(e.value, dt, e.rate);
+    for (const Block& other : system_.others()) add_scaled(other.value, dt, other.rate);
   }
   system_.update_accelerations(t + dt);
+  system_.commit();
 
-  // One sweep for all sums of the step; fixed blocks, so that their bits do not depend on the threads.
-  constexpr std::int64_t block = 4096;
-  struct Sums {
-    double vv = 0, va = 0, ff = 0, uu = 0;
-  };
-  std::vector<Sums> partial(static_cast<std::size_t>((n + block - 1) / block));
+  // One sweep for all sums of the step.
 #pragma omp parallel for schedule(static) if (n > 65536)
-  for (std::int64_t b = 0; b < static_cast<std::int64_t>(partial.size()); ++b) {
+  for (std::size_t b = 0; b < partial_.size(); ++b) {
     Sums s;
-    for (std::int64_t i = b * block; i < std::min(n, (b + 1) * block); ++i) {
+    for (std::size_t i = b * block; i < std::min(x.size(), (b + 1) * block); ++i) {
       const double u = x[i] - start_[i];
       s.vv += m[i] * v[i] * v[i];
       s.va += m[i] * v[i] * (a[i] - previous_[i]);
       s.ff += m[i] * m[i] * a[i] * a[i];
       s.uu += m[i] * u * u;
     }
-    partial[static_cast<std::size_t>(b)] = s;
+    partial_[b] = s;
   }
   Sums sums;
-  for (const Sums& s : partial) {
+  for (const Sums& s : partial_) {
     sums.vv += s.vv;
     sums.va += s.va;
     sums.ff += s.ff;

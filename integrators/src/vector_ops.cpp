@@ -32,6 +32,40 @@ void kick_drift(std::span<double> x, std::span<double> v, std::span<const double
   }
 }
 
+void kick_kick_drift(std::span<double> x, std::span<double> v, std::span<const double> a, double first,
+                     double second, double drift) {
+  const auto n = static_cast<std::int64_t>(x.size());
+  double* xs = x.data();
+  double* vs = v.data();
+  const double* as = a.data();
+#pragma omp parallel for simd schedule(static) if (n > parallel_from)
+  for (std::int64_t i = 0; i < n; ++i) {
+    vs[i] += first * as[i];
+    vs[i] += second * as[i];
+    xs[i] += drift * vs[i];
+  }
+}
+
+void keep_and_add(std::span<double> start, std::span<double> y, double factor, std::span<const double> x) {
+  const auto n = static_cast<std::int64_t>(y.size());
+  double *ys = y.data(), *kept = start.data();
+  const double* xs = x.data();
+#pragma omp parallel for simd schedule(static) if (n > parallel_from)
+  for (std::int64_t i = 0; i < n; ++i) {
+    kept[i] = ys[i];
+    ys[i] += factor * xs[i];
+  }
+}
+
+void blend(std::span<double> y, double of_start, std::span<const double> start, double of_y, double factor,
+           std::span<const double> x) {
+  const auto n = static_cast<std::int64_t>(y.size());
+  double* ys = y.data();
+  const double *kept = start.data(), *xs = x.data();
+#pragma omp parallel for simd schedule(static) if (n > parallel_from)
+  for (std::int64_t i = 0; i < n; ++i) ys[i] = of_start * kept[i] + (of_y * ys[i] + factor * xs[i]);
+}
+
 namespace {
 // Sum of term(i) for i < n, block by block.
 template <class Term>

@@ -68,7 +68,7 @@ class Dust final : public Formulation<2> {
     for (double& a : p_.a.flat()) a = 0;
     finish_accelerations(t);
   }
-  double stable_step() const override { return 1; }
+  Fastest fastest() const override { return {.frequency = 1}; }
   Mat<2> cauchy_stress(Index i) const override { return Mat<2>::Constant(i + 1.0); }
   std::int64_t pairs() const override { return 0; }
   std::size_t bytes() const override { return sizeof(*this); }

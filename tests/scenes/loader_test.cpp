@@ -7,6 +7,7 @@
 #include <scenes/malformed.hpp>
 #include <set>
 #include <sstream>
+#include <taut/integrators/integrator.hpp>
 
 using namespace taut;
 using namespace taut::bench;
@@ -29,6 +30,21 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 }
 
 }  // namespace
+
+TEST_CASE("scenes take every integrator that there is, the documents name them") {
+  std::ifstream file(TAUT_SCENES "/README.md");
+  const std::string document((std::istreambuf_iterator<char>(file)), {});
+  for (const IntegratorEntry& entry : integrators()) {
+    CAPTURE(entry.name);
+    const Scene scene =
+        parse_scene(replaced(test::good_scene, "mode = \"relax\"\ntolerance = 1e-4",
+                             "mode = \"dynamic\"\nduration = 1e-3\nintegrator = \"" + entry.name + '"'),
+                    "good.toml");
+    CHECK(scene.runs.front().solve.integrator == entry.name);
+    CHECK(document.find('`' + entry.name + '`') != std::string::npos);
+    CHECK_FALSE(entry.line.empty());
+  }
+}
 
 TEST_CASE("a scene is read as it is written") {
   const Scene scene = parse_scene(test::good_scene, "good.toml");

@@ -84,7 +84,9 @@ Formulation<D>::Formulation(const FormulationSetup<D>& setup)
       constraints_(setup.constraints),
       loads_(setup.loads),
       method_(setup.method),
-      companion_(companions<D>(setup.particles, setup.method.support_dx * setup.particles.dx)) {}
+      companion_(companions<D>(setup.particles, setup.method.support_dx * setup.particles.dx)) {
+  this->set_motion(p_.u.flat(), p_.v.flat(), p_.a.flat(), p_.m_flat.flat());
+}
 
 template <int D>
 void Formulation<D>::finish_accelerations(double t) {

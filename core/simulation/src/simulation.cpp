@@ -201,29 +201,28 @@ void Simulation<D>::roller(const Where<D>& where, int axis) {
 }
 
 template <int D>
-void Simulation<D>::prescribe(const Where<D>& where, int axis,
-                              std::function<double(const Vec<D>&, double)> displacement) {
+void SimulationImpl<D>::prescribe(const Where<D>& where, int axis, PrescribedMotion<D> motion) {
   if (axis < 0 || axis >= D)
     throw InputError(fmt::format("prescribe: axis {} is not one of 0 … {}", axis, D - 1));
+  // Conditions know the user's coordinates.
+  conditions.push_back([this, axis, selected = select(where, "prescribe"),
+                        local = motion.seen_from(cloud.origin)] { hold(selected, axis, local); });
+}
+template <int D>
+void Simulation<D>::prescribe(const Where<D>& where, int axis, PointHistory<D> displacement,
+                              PointHistory<D> velocity) {
   must_be_callable("prescribe", "displacement", displacement);
-  impl().conditions.push_back([impl = &impl(), axis, selected = impl().select(where, "prescribe"),
-                               f = std::move(displacement)] { impl->hold(selected, axis, f); });
+  impl().prescribe(where, axis, {std::move(displacement), std::move(velocity)});
+}
+template <int D>
+void Simulation<D>::prescribe(const Where<D>& where, int axis, History displacement, History velocity) {
+  must_be_callable("prescribe", "displacement", displacement);
+  impl().prescribe(where, axis, {std::move(displacement), std::move(velocity)});
 }
 
 template <int D>
-void SimulationImpl<D>::hold(const Selected& selected, int axis,
-                             typename Constraints<D>::Displacement displacement) {
-  // Conditions know the user's coordinates.
-  if (displacement)
-    displacement = [f = std::move(displacement), origin = cloud.origin](const Vec<D>& X, double t) {
-      return f(origin + X, t);
-    };
-  if (!selected.particles.empty()) {
-    if (displacement)
-      constraints.prescribe(places(selected.particles), axis, displacement);
-    else
-      constraints.fix(places(selected.particles), axis);
-  }
+void SimulationImpl<D>::hold(const Selected& selected, int axis, const PrescribedMotion<D>& motion) {
+  if (!selected.particles.empty()) constraints.prescribe(places(selected.particles), axis, motion);
   std::vector<BoundPoint<D>> points;
   for (const Index f : selected.facets) {
     BoundPoint<D> point{cloud.facets[static_cast<std::size_t>(f)].centre, {}, f};
@@ -231,7 +230,7 @@ void SimulationImpl<D>::hold(const Selected& selected, int axis,
       point.terms.push_back({term.particle, (term.flips >> axis & 1) ? -term.weight : term.weight});
     points.push_back(std::move(point));
   }
-  if (!points.empty()) constraints.hold(std::move(points), axis, std::move(displacement));
+  if (!points.empty()) constraints.hold(std::move(points), axis, motion);
 }
 
 template <int D>
@@ -459,7 +458,7 @@ void build(SimulationImpl<D>& s) {
       s.particles.u.template set_vec<D>(i, s.initial_displacement(s.particles.reference_position(i)));
   if (!s.particles.mirror.empty()) s.particles.mirror.vectors(s.particles.u);
   auto formulation = make_formulation<D>({s.particles, s.constraints, s.loads, s.method});
-  const double step = formulation->stable_step();
+  const double step = stable_step(leapfrog_limits, formulation->fastest());
   if (!(step > 0) || !std::isfinite(step))
     throw InputError(fmt::format(
         "the stable step of the body at rest is {:g} s: the highest frequency of its particles has no "
@@ -527,11 +526,11 @@ template <int D>
 void Simulation<D>::check_run(double duration, const RunOptions& options) {
   impl().must_be_idle("run");
   check_options(duration, options);
-  make_integrator(options.integrator);
+  const StepLimits limits = make_integrator(options.integrator)->limits();
   prepare();
   if (impl().formulation->failure()) return;
   const double end = impl().time + duration;
-  const double bound = options.cfl * impl().formulation->stable_step();
+  const double bound = options.cfl * stable_step(limits, impl().formulation->fastest());
   const double step = options.max_step > 0 ? std::min(bound, options.max_step) : bound;
   if (duration > 0 && !advances(end, step))
     throw InputError(
@@ -543,9 +542,8 @@ void Simulation<D>::check_run(double duration, const RunOptions& options) {
 template <int D>
 RunResult Simulation<D>::run(double duration, const RunOptions& options) {
   check_run(duration, options);
-  const auto integrator = make_integrator(options.integrator);
   const auto alive = impl_;
-  return alive->guarded("run", [&] { return integrate(*alive, *integrator, duration, options); });
+  return alive->guarded("run", [&] { return integrate(*alive, duration, options); });
 }
 
 template <int D>
@@ -618,6 +616,11 @@ Vec<D> Simulation<D>::velocity(std::size_t id) const {
   return impl().particles.v.template vec<D>(impl().place(id));
 }
 template <int D>
+Vec<D> Simulation<D>::acceleration(std::size_t id) const {
+  prepared(impl());
+  return impl().particles.a.template vec<D>(impl().place(id));
+}
+template <int D>
 const Health& Simulation<D>::health() const {
   prepared(impl());
   return impl().health;
@@ -681,7 +684,8 @@ std::int64_t Simulation<D>::pairs() const {
 }
 template <int D>
 std::size_t Simulation<D>::bytes() const {
-  return prepared(impl()).bytes() + prepared(impl()).own_bytes() + impl().particles.bytes();
+  return prepared(impl()).bytes() + prepared(impl()).own_bytes() + impl().particles.bytes() +
+         (impl().integrator ? impl().integrator->bytes() : 0);
 }
 
 template class Simulation<1>;

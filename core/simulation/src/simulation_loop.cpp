@@ -10,27 +10,45 @@ namespace taut {
 
 namespace {
 
-// Constraints, rates and accelerations of the present time. Where something throws the state is as it was.
+// Begins with another integrator, at the present time: with the constraints and all rates there. Where
+// something throws the state is as it was.
 template <int D>
-void start(SimulationImpl<D>& s) {
+void begin(SimulationImpl<D>& s, const std::string& integrator) {
+  s.look();
+  s.integrator.reset();
+  s.clock = {.start = s.time};
   const Field u = s.particles.u, v = s.particles.v;
   try {
     s.formulation->constrain_positions(s.time);
     s.formulation->constrain_velocities(s.time);
-    if (!s.formulation->evolved().empty()) s.formulation->update_rates(s.time);
-    s.formulation->update_accelerations(s.time);
+    s.formulation->update(s.time);
   } catch (...) {
     std::copy(u.flat().begin(), u.flat().end(), s.particles.u.flat().begin());
     std::copy(v.flat().begin(), v.flat().end(), s.particles.v.flat().begin());
     throw;
   }
+  s.integrator = make_integrator(integrator);
+  s.integrator_name = integrator;
+}
+
+// A step of the integrator. One that throws leaves a state that nobody can go on from.
+template <int D>
+void step(SimulationImpl<D>& s, double dt) {
+  s.step_begins();
+  try {
+    s.integrator->step(*s.formulation, s.clock.now(), dt);
+  } catch (...) {
+    s.integrator.reset();
+    throw;
+  }
+  s.clock.advance(dt);
 }
 
 /// What both loops do around a step: count, keep time, look for breakdowns.
 template <int D>
 class Loop {
  public:
-  Loop(SimulationImpl<D>& simulation, bool undamped) : s_(simulation), watch_((start(s_), s_), undamped) {}
+  Loop(SimulationImpl<D>& simulation, bool undamped) : s_(simulation), watch_(simulation, undamped) {}
 
   RunResult result;
 
@@ -95,25 +113,50 @@ RunResult Loop<D>::finish(bool at_rest) {
   return result;
 }
 
-// Lets whoever looks at velocities have them completed, for as long as it lives.
-template <int D>
-class CompletingVelocities {
- public:
-  CompletingVelocities(SimulationImpl<D>& s, Integrator& integrator) : s_(s) {
-    s.complete_velocities = [&] { integrator.complete(*s.formulation, s.time); };
+// Who watches may look at velocities, now or after an exception of its own.
+template <int D, class Call>
+auto with_velocities(SimulationImpl<D>& s, Call&& call) {
+  try {
+    return call();
+  } catch (...) {
+    s.look();
+    throw;
   }
-  ~CompletingVelocities() { s_.complete_velocities = {}; }
-  CompletingVelocities(const CompletingVelocities&) = delete;
-  CompletingVelocities& operator=(const CompletingVelocities&) = delete;
+}
+
+// The ramp of a relaxation, from the part of the loads that acts already.
+template <int D>
+class Ramp {
+ public:
+  Ramp(SimulationImpl<D>& s, double duration)
+      : s_(s), start_(s.time), duration_(s.load_level < 1 ? duration : 0), from_(s.load_level) {
+    if (duration_ > 0) s.loads.set_ramp([this](double t) { return level(t); });
+  }
+  ~Ramp() {
+    s_.load_level = level(s_.time);
+    s_.loads.set_ramp({});
+    s_.integrator.reset();  // whose rates were those of the ramp
+  }
+  /// When all loads act [s].
+  double end() const { return start_ + duration_; }
+  Ramp(const Ramp&) = delete;
+  Ramp& operator=(const Ramp&) = delete;
 
  private:
+  double level(double t) const {
+    if (!(duration_ > 0)) return 1;
+    const double q = std::clamp((t - start_) / duration_, 0.0, 1.0);
+    return from_ + (1 - from_) * (q * q * (3 - 2 * q));
+  }
+
   SimulationImpl<D>& s_;
+  double start_, duration_, from_;
 };
 
 template <int D>
 void notify(SimulationImpl<D>& s) {
   for (auto& o : s.observers)
-    if (s.time >= o.next) {
+    if (s.time >= o.next * (1 - 1e-12)) {
       s.look();  // before observers may read from many threads
       o.f(s.time);
       o.next = o.interval > 0 ? o.interval * (std::floor(s.time / o.interval * (1 + 1e-12)) + 1) : s.time;
@@ -144,7 +187,7 @@ double force_of_round_off(const SimulationImpl<D>& s) {
   double modulus = 0, farthest = 0;
   for (const auto& material : s.particles.materials)
     modulus = std::max(modulus, material->density() * material->wave_speed() * material->wave_speed());
-  const bool rates = !s.formulation->evolved().empty();
+  const bool rates = !s.formulation->others().empty();
   for (int d = 0; d < D; ++d)
     for (Index i = 0; i < s.particles.n; ++i)
       farthest = std::max(
@@ -160,7 +203,7 @@ bool advances(double end, double step) { return end - step < end; }
 
 template <int D>
 std::vector<double> relaxation_times(const SimulationImpl<D>& s, const RelaxOptions& options) {
-  const double step = options.cfl * s.formulation->stable_step();
+  const double step = options.cfl * stable_step(leapfrog_limits, s.formulation->fastest());
   std::vector<double> times{s.time, s.time + options.ramp_time, s.time + options.free_time};
   for (double steps = 1; steps <= static_cast<double>(options.max_steps) && steps <= 1e9; steps *= 10)
     times.push_back(s.time + steps * step);
@@ -180,14 +223,14 @@ const char* to_string(Status status) {
 }
 
 template <int D>
-RunResult integrate(SimulationImpl<D>& s, Integrator& integrator, double duration,
-                    const RunOptions& options) {
+RunResult integrate(SimulationImpl<D>& s, double duration, const RunOptions& options) {
   const double end = s.time + duration;
+  if (duration > 0) s.load_level = 1;
+  if (!s.integrator || s.integrator_name != options.integrator) begin(s, options.integrator);
   Loop<D> loop(s, true);
-  const CompletingVelocities completing(s, integrator);
-  notify(s);
+  with_velocities(s, [&] { notify(s); });
   while (s.time < end && loop.intact()) {
-    double bound = options.cfl * s.formulation->stable_step();
+    double bound = options.cfl * stable_step(s.integrator->limits(), s.formulation->fastest());
     if (options.max_step > 0) bound = std::min(bound, options.max_step);
     double dt = s.step_control.next(bound);
     if (!advances(end, dt)) {
@@ -195,15 +238,19 @@ RunResult integrate(SimulationImpl<D>& s, Integrator& integrator, double duratio
                                                                  : "not a number");
       break;
     }
-    // No sliver of a step that rounding has left.
-    const bool last = s.time + dt >= end - 1e-6 * dt;
-    if (last) dt = end - s.time;
-    s.step_begins();
-    integrator.step(*s.formulation, s.time, dt);
-    loop.stepped(last ? end : s.time + dt);
-    notify(s);
-    if (options.progress && !options.progress(loop.result.steps, s.time, 1 - (end - s.time) / duration))
-      break;
+    // No sliver of a step that rounding has left, nor one for its sake that is not as long as the others.
+    const double left = end - s.clock.now(), sliver = 1e-6 * dt;
+    const bool last = dt >= left - sliver;
+    const bool cut = dt > left + sliver;
+    if (cut) dt = left;
+    step(s, dt);
+    if (cut) s.clock = {.start = end};
+    loop.stepped(last ? end : s.clock.now());
+    const bool go_on = with_velocities(s, [&] {
+      notify(s);
+      return !options.progress || options.progress(loop.result.steps, s.time, 1 - (end - s.time) / duration);
+    });
+    if (!go_on) break;
   }
   s.look();
   return loop.finish(false);
@@ -215,27 +262,20 @@ RunResult find_equilibrium(SimulationImpl<D>& s, const RelaxOptions& options) {
   // Asked before anything changes, for histories may throw. Where nothing is applied and nothing will be,
   // round-off must not be compared with round-off.
   const bool left_alone = is_left_alone(s, relaxation_times(s, options));
-  if (options.ramp_time > 0)
-    s.loads.set_ramp([start, T = options.ramp_time](double t) {
-      const double q = std::clamp((t - start) / T, 0.0, 1.0);
-      return q * q * (3 - 2 * q);
-    });
+  const Ramp<D> ramp(s, options.ramp_time);
+  begin(s, "leapfrog");
   Loop<D> loop(s, false);
   RunResult& result = loop.result;
   result.status = Status::not_converged;
-  const auto undamped = make_integrator("leapfrog");
   bool stopped = false;
   while (!stopped && s.time - start < options.free_time && result.steps < options.max_steps &&
          loop.intact()) {
-    const double dt = s.step_control.next(options.cfl * s.formulation->stable_step());
-    s.step_begins();
-    undamped->step(*s.formulation, s.time, dt);
-    loop.stepped(s.time + dt);
-    stopped = loop.stopped(options.progress, 0);
+    step(s, s.step_control.next(options.cfl * stable_step(leapfrog_limits, s.formulation->fastest())));
+    loop.stepped(s.clock.now());
+    stopped = with_velocities(s, [&] { return loop.stopped(options.progress, 0); });
   }
-  if (result.steps > 0) s.step_begins();
-  undamped->complete(*s.formulation, s.time);
-  s.step_ends();
+  s.look();
+  s.integrator.reset();
   Relaxation relaxation(*s.formulation);
   double largest = 0;
   const double round_off = left_alone ? force_of_round_off(s) : 0;
@@ -243,7 +283,7 @@ RunResult find_equilibrium(SimulationImpl<D>& s, const RelaxOptions& options) {
   constexpr int in_a_row = 20;
   int converged = 0;
   while (!stopped && result.steps < options.max_steps && loop.intact()) {
-    const double dt = options.cfl * s.formulation->stable_step();
+    const double dt = options.cfl * stable_step(leapfrog_limits, s.formulation->fastest());
     if (!(dt > 0) || !std::isfinite(dt)) {
       loop.give_up(dt == 0 && has_numbers(s.particles) ? "step too small to advance time" : "not a number");
       break;
@@ -260,7 +300,7 @@ RunResult find_equilibrium(SimulationImpl<D>& s, const RelaxOptions& options) {
     result.remaining_motion = relaxation.remaining_motion();
     // Nothing has moved yet, but will.
     const bool waits = scale == 0 && !left_alone;
-    const bool small = !waits && s.time - start >= options.ramp_time &&
+    const bool small = !waits && s.time >= ramp.end() &&
                        ((left_alone && relaxation.force_norm() <= round_off) ||
                         (result.residual <= options.tolerance &&
                          (result.remaining_motion <= RelaxOptions::still_moving || result.residual == 0)));
@@ -275,7 +315,7 @@ RunResult find_equilibrium(SimulationImpl<D>& s, const RelaxOptions& options) {
 
 #define TAUT_INSTANTIATE(D)                                                                        \
   template std::vector<double> relaxation_times<D>(const SimulationImpl<D>&, const RelaxOptions&); \
-  template RunResult integrate<D>(SimulationImpl<D>&, Integrator&, double, const RunOptions&);     \
+  template RunResult integrate<D>(SimulationImpl<D>&, double, const RunOptions&);                  \
   template RunResult find_equilibrium<D>(SimulationImpl<D>&, const RelaxOptions&);
 TAUT_INSTANTIATE(1)
 TAUT_INSTANTIATE(2)

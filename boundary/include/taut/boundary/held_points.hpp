@@ -2,10 +2,10 @@
 /// \file
 /// Constraints on points between and beyond particles.
 
-#include <functional>
 #include <memory>
 #include <taut/base/fields.hpp>
 #include <taut/base/types.hpp>
+#include <taut/boundary/prescribed_motion.hpp>
 #include <unordered_map>
 #include <vector>
 
@@ -30,20 +30,17 @@ struct BoundPoint {
 template <int D>
 class HeldPoints {
  public:
-  using Displacement = std::function<double(const Vec<D>& X, double t)>;
-
   HeldPoints();
   ~HeldPoints();
   HeldPoints(HeldPoints&&) noexcept;
   HeldPoints& operator=(HeldPoints&&) noexcept;
 
-  /// An empty displacement is zero.
-  void add(std::vector<BoundPoint<D>> points, Displacement displacement);
+  void add(std::vector<BoundPoint<D>> points, PrescribedMotion<D> motion);
   bool empty() const { return points_.empty(); }
-  /// Calls f(point, displacement) for each point.
+  /// Calls f(point, motion) for each point.
   template <class F>
   void for_each(F&& f) const {
-    for (std::size_t k = 0; k < points_.size(); ++k) f(points_[k], displacements_[set_[k]]);
+    for (std::size_t k = 0; k < points_.size(); ++k) f(points_[k], motions_[set_[k]]);
   }
 
   /// Factors the system for particles of the given masses (one value a particle); those for which `fixed` is
@@ -52,27 +49,30 @@ class HeldPoints {
   void factor(const Field& mass, const std::vector<char>& fixed);
 
   /// Moves `values` (one component of a field) by the least change, weighted by mass, that makes the points
-  /// follow `target(X_f, displacement)`.
-  template <class Target>
-  void project(double* values, Target&& target) const {
-    std::vector<double> defect(rows());
-    for (std::size_t r = 0; r < defect.size(); ++r) {
+  /// follow `now(motion)`, a `PrescribedMotion::Now` that is asked for once a motion. Not by two threads.
+  template <class At>
+  void project(double* values, At&& now) const {
+    if (row_point_.empty()) return;
+    for (std::size_t m = 0; m < motions_.size(); ++m) now_[m] = now(motions_[m]);
+    for (std::size_t r = 0; r < defect_.size(); ++r) {
       const std::size_t k = row_point_[r];
-      defect[r] = target(points_[k].X, displacements_[set_[k]]);
-      for (const auto& term : points_[k].terms) defect[r] -= term.weight * values[term.particle];
+      defect_[r] = now_[set_[k]](points_[k].X);
+      for (const auto& term : points_[k].terms) defect_[r] -= term.weight * values[term.particle];
     }
-    correct(defect, values);
+    correct(values);
   }
 
  private:
-  std::size_t rows() const { return row_point_.size(); }
-  void correct(const std::vector<double>& defect, double* values) const;
+  void correct(double* values) const;
 
   std::vector<BoundPoint<D>> points_;
-  std::vector<std::size_t> set_;  // of each point: which displacement it follows
-  std::vector<Displacement> displacements_;
+  std::vector<std::size_t> set_;  // of each point: which motion it follows
+  std::vector<PrescribedMotion<D>> motions_;
   std::unordered_map<Index, std::size_t> place_;  // of each point by its number
   std::vector<std::size_t> row_point_;            // the points that take part
+  // Of the last projection, kept for their memory.
+  mutable std::vector<typename PrescribedMotion<D>::Now> now_;
+  mutable std::vector<double> defect_;
   struct System;
   std::unique_ptr<System> system_;
 };

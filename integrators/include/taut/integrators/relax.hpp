@@ -6,6 +6,7 @@
 #include <functional>
 #include <taut/base/fields.hpp>
 #include <taut/integrators/dynamics.hpp>
+#include <vector>
 
 namespace taut {
 
@@ -17,7 +18,7 @@ class Relaxation {
  public:
   explicit Relaxation(Dynamics& system);
 
-  /// One damped step of dt [s] to time t + dt. Expects accelerations of time t.
+  /// One damped step of dt [s] to time t + dt, with the limits of leapfrog. Expects the rates of time t.
   void step(double t, double dt);
   /// Euclidean norm of the out-of-balance forces [N] of the present state.
   double force_norm() const { return force_norm_; }
@@ -29,8 +30,14 @@ class Relaxation {
   double damping() const { return damping_; }
 
  private:
+  // What a step sums up; in fixed blocks, so that the bits do not depend on the threads.
+  struct Sums {
+    double vv = 0, va = 0, ff = 0, uu = 0;
+  };
+
   Dynamics& system_;
   AlignedArray<double> start_, previous_;
+  std::vector<Sums> partial_;
   double damping_ = 0, force_norm_ = 0, kinetic_energy_ = 0, remaining_ = 1;
 };
 

@@ -13,6 +13,7 @@
 #include <taut/boundary/loads.hpp>
 #include <taut/formulations/health.hpp>
 #include <taut/integrators/dynamics.hpp>
+#include <taut/integrators/step_limits.hpp>
 #include <taut/operators/method.hpp>
 #include <taut/particles/particles.hpp>
 #include <vector>
@@ -43,23 +44,22 @@ struct FormulationSetup {
   const Method& method;
 };
 
-/// The spatial discretisation of a body: accelerations from the state of its particles. A new formulation is
-/// one class in one file and one line in `formulation_registry` (formulation.cpp).
+/// The spatial discretisation of a body: accelerations from the state of its particles. Positions are
+/// displacements: as the state they keep the digits of small strains, however far the particles stand from
+/// the origin. A new formulation is one class in one file and one line in `formulation_registry`
+/// (formulation.cpp).
 template <int D>
 class Formulation : public Dynamics {
  public:
   explicit Formulation(const FormulationSetup<D>& setup);
 
-  /// Displacements: as the state they keep the digits of small strains, however far the particles stand from
-  /// the origin.
-  std::span<double> positions() override { return p_.u.flat(); }
-  std::span<double> velocities() override { return p_.v.flat(); }
-  std::span<const double> accelerations() override { return p_.a.flat(); }
-  std::span<const double> masses() override { return p_.m_flat.flat(); }
   void constrain_positions(double t) override { constraints_.apply_to_displacements(t, p_.X, p_.u); }
   void constrain_velocities(double t) override {
-    constraints_.apply_to_velocities(t, p_.X, p_.v, 1e-2 * stable_step());
+    // Differences of histories over what changes within a step.
+    if (!constraints_.empty())
+      constraints_.apply_to_velocities(t, p_.X, p_.v, 0.25 * stable_step(leapfrog_limits, fastest()));
   }
+  bool constraints_project() const override { return constraints_.projects(); }
 
   /// Set by the update that found the state broken.
   const std::optional<Failure>& failure() const { return failure_; }

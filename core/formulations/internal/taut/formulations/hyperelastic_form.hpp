@@ -24,7 +24,7 @@ TAUT_INLINE void deform(Pack (&H)[D * D], std::size_t stride, double* F, double*
   for (std::size_t c = 0; c < D * D; ++c) store(F + c * stride, H[c]);
 }
 
-/// Hyperelastic materials, and the step that they allow. Forms set `frequency_` once and `stretch_` in each
+/// Hyperelastic materials, and how fast they are. Forms set `frequency_` once and `stretch_` in each
 /// update.
 template <int D>
 class HyperelasticForm : public Formulation<D> {
@@ -44,15 +44,15 @@ class HyperelasticForm : public Formulation<D> {
     }
   }
 
-  double stable_step() const override {
+  Fastest fastest() const override {
     double ratio = 1;
     for (const auto* material : materials_) {
       const double now = material->wave_speed(stretch_.min, stretch_.max, stretch_.J_min, stretch_.J_max) /
                          material->wave_speed();
-      if (std::isnan(now)) return now;
+      if (std::isnan(now)) return {.frequency = now};
       ratio = std::max(ratio, now);
     }
-    return 2 / (frequency_ * ratio);
+    return {.frequency = frequency_ * ratio};
   }
   double frequency() const override { return frequency_; }
   Index stiffest() const override { return stiffest_; }

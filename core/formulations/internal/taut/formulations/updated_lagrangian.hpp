@@ -48,18 +48,13 @@ class UpdatedLagrangian : public Formulation<D> {
  public:
   explicit UpdatedLagrangian(const FormulationSetup<D>& setup);
 
-  std::vector<Evolved> evolved() override {
-    return {{rho_.flat(), rho_rate_.flat()},
-            {rho_material_.flat(), rho_material_rate_.flat()},
-            {s_.flat(), s_rate_.flat()}};
-  }
   void update_rates(double t) override;
   void inspect() override;
 
-  double stable_step() const override {
+  Fastest fastest() const override {
     double speed = 0;
     for (const auto& material : p_.materials) speed = std::max(speed, material->wave_speed());
-    return h_ / (speed * (1 + 0.6 * this->method_.viscosity));
+    return {.wave_speed = speed * (1 + 0.6 * this->method_.viscosity), .length = h_};
   }
   Mat<D> cauchy_stress(Index i) const override {
     return full_cauchy_stress(i).template topLeftCorner<D, D>();
@@ -161,6 +156,9 @@ UpdatedLagrangian<D>::UpdatedLagrangian(const FormulationSetup<D>& setup)
   const std::size_t n = p_.X.particles();  // there is room for more images
   rho_ = rho_rate_ = rho_material_ = rho_material_rate_ = Field(n, 1);
   s_ = s_rate_ = T_ = Field(n, S);
+  this->add_variable(rho_.flat(), rho_rate_.flat());
+  this->add_variable(rho_material_.flat(), rho_material_rate_.flat());
+  this->add_variable(s_.flat(), s_rate_.flat());
   std::fill(rho_.flat().begin(), rho_.flat().end(), 1.0);
   std::fill(rho_material_.flat().begin(), rho_material_.flat().end(), 1.0);
   for (Index i = 0; i < p_.n; ++i)

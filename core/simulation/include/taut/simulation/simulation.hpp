@@ -52,8 +52,9 @@ struct RunResult {
 using Progress = std::function<bool(std::int64_t steps, double time, double fraction)>;
 
 struct RunOptions {
-  std::string integrator = "leapfrog";  ///< "leapfrog" or "central_difference"
-  double cfl = 0.6;     ///< fraction of the stable step, 0 < cfl <= 1; more only beside a `max_step`
+  std::string integrator = "leapfrog";  ///< one of `integrator_names`
+  double cfl =
+      0.6;  ///< fraction of the integrator's largest step, 0 < cfl <= 1; more only beside a `max_step`
   double max_step = 0;  ///< upper bound of the step [s]; 0 = none
   Progress progress{};
 };
@@ -62,8 +63,11 @@ struct RelaxOptions {
   double tolerance =
       1e-6;  ///< wanted |out-of-balance force| / |applied force|, the largest seen where no force is applied
   static constexpr double still_moving =
-      1e-4;              ///< the second condition of equilibrium: `remaining_motion` at most
-  double ramp_time = 0;  ///< loads grow smoothly from zero over this time [s]; 0: full at once
+      1e-4;  ///< the second condition of equilibrium: `remaining_motion` at most
+  /// Loads grow smoothly over this time [s]; 0: full at once. They grow from the part of them that acts
+  /// already: none at first, all after a `run` or a ramp that came to its end, what there was of a ramp that
+  /// did not.
+  double ramp_time = 0;
   double free_time = 0;  ///< motion without damping for this time [s] first: what sudden loads do to a body
   std::int64_t max_steps = 10'000'000;
   double cfl = 0.6;
@@ -73,8 +77,10 @@ struct RelaxOptions {
 /// Which particles: a predicate of the reference position.
 template <int D>
 using Where = std::function<bool(const Vec<D>& X)>;
-/// A history in time.
+/// A history in time, of all or of each point by its reference position.
 using History = std::function<double(double t)>;
+template <int D>
+using PointHistory = std::function<double(const Vec<D>& X, double t)>;
 
 template <int D>
 struct SimulationImpl;
@@ -131,9 +137,11 @@ class Simulation {
   // cell-centred lattice.
   void clamp(const Where<D>& where);             ///< displacement zero
   void roller(const Where<D>& where, int axis);  ///< displacement zero along one axis
-  /// Displacement along `axis` follows `displacement(X, t)`.
-  void prescribe(const Where<D>& where, int axis,
-                 std::function<double(const Vec<D>& X, double t)> displacement);
+  /// Displacement along `axis` follows `displacement(X, t)` or, the same for all and asked for once a step,
+  /// `displacement(t)`; velocities follow `velocity`, or differences of the displacements from t = 0 on.
+  void prescribe(const Where<D>& where, int axis, PointHistory<D> displacement,
+                 PointHistory<D> velocity = {});
+  void prescribe(const Where<D>& where, int axis, History displacement, History velocity = {});
   /// Dead load: `force` [N] (per unit thickness in 2D, per unit area in 1D) spread over the selected
   /// particles by their boundary area along the face normal, or evenly where areas are unknown; times
   /// `history`. With facets over those selected and those of selected particles, from where it is carried to
@@ -152,7 +160,14 @@ class Simulation {
   /// \throws InputError for what the parts refuse: particles that coincide or whose neighbours do not span
   /// the space, masses and stable steps that are no positive finite numbers.
   void prepare();
-  /// \throws InputError as `check_run`, RunError when an earlier error has left no state to go on from.
+  /// Advances the time by `duration` [s], in steps that do not know where the run ends: the last one is as
+  /// long as the others where that meets the end to a millionth of a step, else it is cut. Where it is not, a
+  /// run of the same options goes on as if there had been no end: run(T), run(T) gives the bits of run(2 T).
+  /// Loads act as they are given, whatever a ramp of `relax` came to. Velocities are of the time of positions
+  /// after the run, and for observers and progress calls; looking at them does not change the bits of what
+  /// follows. What these calls throw ends the run after a whole step, from where another goes on; what
+  /// materials and histories throw within a step leaves no state to go on from. \throws InputError as
+  /// `check_run`, RunError when an earlier error has left no state to go on from.
   RunResult run(double duration, const RunOptions& options = {});
   /// \throws InputError as `check_relax`, RunError as `run`.
   RunResult relax(const RelaxOptions& options = {});
@@ -175,6 +190,8 @@ class Simulation {
   Vec<D> position(std::size_t id) const;
   Vec<D> displacement(std::size_t id) const;
   Vec<D> velocity(std::size_t id) const;
+  /// [m/s^2] of the last step, constrained components zero; of the present state after run(0).
+  Vec<D> acceleration(std::size_t id) const;
   Mat<D> cauchy_stress(std::size_t id) const;
   /// The Cauchy stress with the axes that the body does not have: sigma_zz of plane strain, sigma_yy =
   /// sigma_zz of 1D, zeros of plane stress. What von_mises and its like take (derived.hpp). \throws

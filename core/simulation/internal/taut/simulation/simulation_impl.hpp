@@ -2,6 +2,7 @@
 /// \file
 /// What a Simulation is made of; shared by its set-up, its loops and its look at the state.
 
+#include <cstdint>
 #include <functional>
 #include <list>
 #include <memory>
@@ -19,6 +20,19 @@
 #include <vector>
 
 namespace taut {
+
+/// The time of the integrator: steps of one length are counted, not added up, so that it does not depend on
+/// where runs begin and end.
+struct StepClock {
+  double start = 0, step = 0;
+  std::int64_t count = 0;
+
+  double now() const { return start + static_cast<double>(count) * step; }
+  void advance(double dt) {
+    if (dt != step) *this = {now(), dt, 0};
+    ++count;
+  }
+};
 
 /// What a simulation is given.
 template <int D>
@@ -65,8 +79,12 @@ struct SimulationImpl : SimulationInput<D>, SimulationBuilt<D> {
 
   std::list<Observer> observers;  // one may add another while it is called
   StepControl step_control;
-  std::function<void()> complete_velocities;  // while a run leaves them at half steps
+  // Of the last run, where its state is still the present one: another run goes on with it.
+  std::string integrator_name;
+  std::unique_ptr<Integrator> integrator;
+  StepClock clock;
   double time = 0;
+  double load_level = 0;     // the part of the loads that acts at the end of the last run or relaxation
   HealthBalance<D> balance;  // at the start of runs that conserve energy
 
   const char* busy = nullptr;  // prepare, run or relax, while it lasts
@@ -84,9 +102,9 @@ struct SimulationImpl : SimulationInput<D>, SimulationBuilt<D> {
 
   // To be called before velocities are read.
   void look() const {
-    if (!complete_velocities) return;
+    if (!integrator) return;
     mid_step = true;
-    complete_velocities();
+    integrator->complete(*formulation, clock.now());
     mid_step = false;
   }
   /// Throws unless the user has such a particle.
@@ -106,7 +124,8 @@ struct SimulationImpl : SimulationInput<D>, SimulationBuilt<D> {
   std::vector<Index> places(std::vector<Index> ids) const;  // all twins
   // The interfaces, if the method resolves them; else null.
   const Interfaces<D>* met() const;
-  void hold(const Selected& selected, int axis, typename Constraints<D>::Displacement displacement);
+  void prescribe(const Where<D>& where, int axis, PrescribedMotion<D> motion);
+  void hold(const Selected& selected, int axis, const PrescribedMotion<D>& motion);
   void add_load(const Selected& selected, const Vec<D>& force, History history);
   bool add_traction(const Selected& selected, const Vec<D>& force, const History& history);
   void place_facets();
@@ -120,8 +139,7 @@ std::vector<double> relaxation_times(const SimulationImpl<D>& simulation, const 
 
 /// Advances by `duration` [s]; the loop of Simulation::run.
 template <int D>
-RunResult integrate(SimulationImpl<D>& simulation, Integrator& integrator, double duration,
-                    const RunOptions& options);
+RunResult integrate(SimulationImpl<D>& simulation, double duration, const RunOptions& options);
 /// Relaxes to static equilibrium; the loop of Simulation::relax.
 template <int D>
 RunResult find_equilibrium(SimulationImpl<D>& simulation, const RelaxOptions& options);
