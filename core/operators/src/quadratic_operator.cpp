@@ -6,7 +6,8 @@
 #include <cmath>
 #include <taut/base/describe.hpp>
 #include <taut/base/error.hpp>
-#include <taut/operators/pair_vectors.hpp>
+#include <taut/operators/operator_entries.hpp>
+#include <taut/operators/operator_parts.hpp>
 #include <taut/operators/quadratic_operator.hpp>
 
 namespace taut {
@@ -131,6 +132,32 @@ void make_quadratic(const Particles<D>& p, const PairList& pairs, const Kernel& 
         return std::pair<Vec<D>, Vec<D>>(fit.vector(a, X), -fit.vector(b, -X));
       },
       op);
+}
+
+namespace {
+
+template <int D>
+PairOperator<D> make(const OperatorSetup<D>& setup) {
+  PairOperator<D> op = start_operator(setup, false);
+  if (!setup.particles.spacing.empty())
+    throw InputError(
+        "quadratic operators have one support for all particles, which this cloud is too graded for: use "
+        "compatible operators");
+  make_quadratic(setup.particles, setup.pairs, setup.kernel, setup.smoothing_length, op);
+  make_matrices(setup, true, op);
+  return op;
+}
+
+}  // namespace
+
+OperatorEntry quadratic_entry() {
+  return {
+      .name = "quadratic",
+      .line =
+          "gradients of quadratic fields exact; does not close, so that it does not converge on irregular "
+          "clouds; takes `support_dx` from about 2.1",
+      .make = {make<1>, make<2>, make<3>},
+      .traits = {.exact = 2, .adjoint = true, .support_dx = 2.4}};
 }
 
 template void make_quadratic<1>(const Particles<1>&, const PairList&, const Kernel&, double,

@@ -8,7 +8,7 @@
 #include <taut/base/powers.hpp>
 #include <taut/formulations/assembly.hpp>
 #include <taut/formulations/auto_method.hpp>
-#include <taut/formulations/formulations.hpp>
+#include <taut/formulations/registry.hpp>
 #include <taut/geometry/local_origin.hpp>
 #include <taut/integrators/integrator.hpp>
 #include <taut/kernels/kernel.hpp>
@@ -19,33 +19,6 @@
 #include <taut/simulation/simulation_impl.hpp>
 
 namespace taut {
-
-namespace {
-
-// Names are checked when they are given, not minutes later.
-template <int D>
-void check(const Method& method) {
-  const auto one_of = [](const char* what, const std::string& name, const std::vector<std::string>& valid) {
-    if (std::find(valid.begin(), valid.end(), name) == valid.end())
-      throw InputError(fmt::format("unknown {} \"{}\"; valid: {}", what, name, join_names(valid)));
-  };
-  one_of("formulation", method.formulation, formulation_names());
-  one_of("operators", method.operators, operator_names());
-  one_of("kernel", method.kernel, Kernel::names());
-  search_method(method.neighbours);
-  if (!(method.support_dx > 1) || method.support_dx > 20)
-    throw InputError(fmt::format("support_dx = {:g} must lie between 1 (nearest neighbours excluded) and 20",
-                                 method.support_dx));
-  const auto not_negative = [](const char* what, double value) {
-    if (!(value >= 0) || !std::isfinite(value))
-      throw InputError(fmt::format("{} = {:g} must not be negative", what, value));
-  };
-  not_negative("zero_energy_control", method.zero_energy_control.value_or(0));
-  not_negative("viscosity", method.viscosity);
-  not_negative("skin", method.skin);
-}
-
-}  // namespace
 
 template <int D>
 std::vector<Index> SimulationImpl<D>::select_particles(const Where<D>& where, const char* what) const {
@@ -91,7 +64,7 @@ std::vector<Index> SimulationImpl<D>::places(std::vector<Index> ids) const {
 template <int D>
 const Interfaces<D>* SimulationImpl<D>::met() const {
   return interfaces && interfaces->resolved() &&
-                 materials_meet(method.formulation) != MaterialsMeet::in_particles
+                 formulation_traits(method.formulation).materials != MaterialsMeet::in_particles
              ? interfaces.get()
              : nullptr;
 }
@@ -100,8 +73,7 @@ template <int D>
 Simulation<D>::Simulation(Cloud<D> cloud, std::shared_ptr<const Material<D>> material, Method method)
     : impl_(std::make_unique<SimulationImpl<D>>()) {
   if (!material) throw InputError("a simulation needs a material");
-  method = complete(method, cloud, *material);
-  check<D>(method);
+  method = checked_method(complete(method, cloud, *material));
   if (cloud.size() == 0) throw InputError("the body has no particles");
   if (!(cloud.dx > 0) || !std::isfinite(cloud.dx))
     throw InputError(fmt::format("the cloud's spacing dx = {:g} must be positive", cloud.dx));
@@ -129,8 +101,8 @@ Simulation<D>::Simulation(Cloud<D> cloud, std::shared_ptr<const Material<D>> mat
       throw InputError(
           fmt::format("the owner {} of a facet is none of the {} particles", facet.owner, cloud.size()));
   // What the method has no use for.
-  if (!needs_areas(method.operators)) cloud.facets = {};
-  if (materials_meet(method.formulation) != MaterialsMeet::in_cells) {
+  if (!needs_areas(method)) cloud.facets = {};
+  if (formulation_traits(method.formulation).materials != MaterialsMeet::in_cells) {
     cloud.cells = {};
     cloud.cell_share = {};
   }
@@ -387,19 +359,19 @@ void Simulation<D>::prepare() {
   SimulationImpl<D>& s = *impl_;
   const bool areas_known = !s.cloud.B.empty() || !s.cloud.facets.empty();
   const Interfaces<D>* interfaces = s.met();
-  const MaterialsMeet meet = materials_meet(s.method.formulation);
+  const FormulationTraits& traits = formulation_traits(s.method.formulation);
   if (interfaces) interfaces->straighten(s.cloud);
-  if (needs_areas(s.method.operators) && s.planes.empty()) enclose(s.cloud);
+  if (needs_areas(s.method) && s.planes.empty()) enclose(s.cloud);
   open_facets_on<D>(s.planes, s.cloud);
   const double widest = s.cloud.spacing.empty()
                             ? s.cloud.dx
                             : *std::max_element(s.cloud.spacing.begin(), s.cloud.spacing.end());
   const double reach = s.method.support_dx * widest * (1 + s.method.skin);
   for (const auto& material : s.materials) check_wave_speed(*material);
-  const bool twins = interfaces && meet == MaterialsMeet::in_twins;
+  const bool twins = interfaces && traits.materials == MaterialsMeet::in_twins;
   s.particles = assemble<D>(s.cloud, s.materials, s.material, s.planes, reach, interfaces, twins);
   // Areas that are guesses tell nothing. Forms that find their neighbours anew let bodies meet.
-  if (meet != MaterialsMeet::in_particles && (areas_known || s.cloud.body))
+  if (traits.reference == Reference::total && (areas_known || s.cloud.body))
     s.particles.rule = PairRule<D>::make(s.cloud, s.particles, s.planes, twins ? interfaces : nullptr, reach);
   if (!s.cloud.facets.empty()) s.place_facets();
   s.cloud.cells = {};  // the particles have them now
