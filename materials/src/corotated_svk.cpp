@@ -79,6 +79,11 @@ double CorotatedSvk<D>::wave_speed(double stretch_min, double stretch_max, doubl
 
 }  // namespace
 
-TAUT_MATERIAL(corotated_svk, CorotatedSvk)
+MaterialEntry corotated_svk_entry() {
+  return {.name = "corotated_svk",
+          .line = "P = R S with F = R U: objective, not the derivative of an energy",
+          .make = material_makers<CorotatedSvk>(),
+          .traits = {.energy = false}};
+}
 
 }  // namespace taut

@@ -131,6 +131,11 @@ double JaumannHypoelastic<D>::wave_speed(double stretch_min, double stretch_max,
 
 }  // namespace
 
-TAUT_MATERIAL(hypoelastic, JaumannHypoelastic)
+MaterialEntry hypoelastic_entry() {
+  return {.name = "hypoelastic",
+          .line = "Jaumann rate of the deviatoric stress, p = K (ρ / ρ0 − 1) (Gray, Monaghan and Swift 2001)",
+          .make = material_makers<JaumannHypoelastic>(),
+          .traits = {.kind = MaterialKind::rate, .energy = false}};
+}
 
 }  // namespace taut

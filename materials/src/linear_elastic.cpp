@@ -47,6 +47,10 @@ class LinearElastic final : public Hyperelastic<D> {
 
 }  // namespace
 
-TAUT_MATERIAL(linear_elastic, LinearElastic)
+MaterialEntry linear_elastic_entry() {
+  return {.name = "linear_elastic",
+          .line = "small strain, P = σ(ε), ε = sym(F) − I; not objective: rotation makes stress",
+          .make = material_makers<LinearElastic>()};
+}
 
 }  // namespace taut

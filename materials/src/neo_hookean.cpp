@@ -114,6 +114,10 @@ double NeoHookean<D>::wave_speed(double stretch_min, double stretch_max, double 
 
 }  // namespace
 
-TAUT_MATERIAL(neo_hookean, NeoHookean)
+MaterialEntry neo_hookean_entry() {
+  return {.name = "neo_hookean",
+          .line = "P = µ (F − F⁻ᵀ) + λ ln J F⁻ᵀ (Bonet and Wood 1997)",
+          .make = material_makers<NeoHookean>()};
+}
 
 }  // namespace taut

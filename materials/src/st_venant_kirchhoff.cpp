@@ -55,6 +55,10 @@ class StVenantKirchhoff final : public Hyperelastic<D> {
 
 }  // namespace
 
-TAUT_MATERIAL(st_venant_kirchhoff, StVenantKirchhoff)
+MaterialEntry st_venant_kirchhoff_entry() {
+  return {.name = "st_venant_kirchhoff",
+          .line = "P = F S, S = λ tr(E) I + 2µ E, E = (Fᵀ F − I) / 2",
+          .make = material_makers<StVenantKirchhoff>()};
+}
 
 }  // namespace taut

@@ -2,6 +2,7 @@
 
 #include <taut/base/error.hpp>
 #include <taut/neighbors/kd_tree.hpp>
+#include <taut/neighbors/registry.hpp>
 #include <taut/neighbors/search.hpp>
 #include <taut/neighbors/search_variants.hpp>
 #include <taut/neighbors/slice_search.hpp>
@@ -19,11 +20,16 @@ PairList search(const PointView<D>& points, const Radii& radii, SearchOptions op
 
 }  // namespace
 
-SearchMethod search_method(std::string_view name) {
-  if (name == "cell_list") return SearchMethod::cell_list;
-  if (name == "kd_tree") return SearchMethod::kd_tree;
-  throw InputError(fmt::format("unknown neighbour search \"{}\"; valid: cell_list, kd_tree", name));
+const Registry<SearchEntry>& search_registry() {
+  static const Registry<SearchEntry> all(
+      "neighbour search",
+      {{"cell_list", "cells of the size of the support, eight particles at a time", SearchMethod::cell_list},
+       {"kd_tree", "a k-d tree (nanoflann): for clouds that leave most of their box empty",
+        SearchMethod::kd_tree}});
+  return all;
 }
+
+SearchMethod search_method(std::string_view name) { return search_registry().find(name).method; }
 
 template <int D>
 PairList find_pairs(PointView<D> points, double radius, SearchOptions options) {

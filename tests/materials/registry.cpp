@@ -38,7 +38,7 @@ TEST_CASE("every name makes a material of that name, in every dimension") {
 
 TEST_CASE("an unknown name is answered by the valid ones") {
   const std::string message = message_of("rubber", steel);
-  CHECK(message.find("'rubber'") != std::string::npos);
+  CHECK(message.find("\"rubber\"") != std::string::npos);
   for (const std::string& name : material_names()) CHECK(message.find(name) != std::string::npos);
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <taut/base/error.hpp>
 #include <taut/formulations/auto_method.hpp>
+#include <taut/formulations/registry.hpp>
+#include <taut/operators/registry.hpp>
 
 namespace taut {
 namespace {
@@ -142,20 +144,29 @@ bool lies_inside(const Cloud<D>& cloud) {
 }
 
 Method with_defaults(Method m) {
+  settle_parameters(m);
   if (m.formulation == "auto") m.formulation = "tl_displacement";
   if (m.operators.empty()) m.operators = "corrected";
   if (m.kernel.empty()) m.kernel = "wendland_c2";
-  if (m.support_dx == 0) m.support_dx = 1.5;
+  if (m.support_dx != 0) return m;
+  // Names that are none are for others to refuse.
+  const FormulationEntry* formulation = formulation_registry().look_up(m.formulation);
+  const OperatorEntry* operators = operator_registry().look_up(m.operators);
+  if (formulation) m.support_dx = formulation->traits.support_dx;
+  if (operators && (!formulation || formulation->traits.operators))
+    m.support_dx = std::max(m.support_dx, operators->traits.support_dx);
   return m;
 }
 
 template <int D>
-Method complete(const Method& method, const Cloud<D>& cloud, const Material<D>& material) {
+Method complete(const Method& given_method, const Cloud<D>& cloud, const Material<D>& material) {
   const Method open;
+  Method method = given_method;
+  settle_parameters(method);
   AutoFacts facts;
   facts.asks_for_pairs = !method.operators.empty() || !method.kernel.empty() || method.support_dx != 0 ||
                          method.neighbours != open.neighbours || method.pair_precision != open.pair_precision;
-  facts.rate_law = dynamic_cast<const Hypoelastic<D>*>(&material) != nullptr;
+  facts.rate_law = kind_of(material) == MaterialKind::rate;
   if (method.formulation != "auto" || (facts.asks_for_pairs && !facts.rate_law)) return with_defaults(method);
   facts.cells = !cloud.cells.empty();
   facts.inside = !facts.cells && !facts.rate_law && lies_inside(cloud);

@@ -5,51 +5,22 @@
 #include <limits>
 #include <taut/base/error.hpp>
 #include <taut/formulations/formulation.hpp>
-#include <taut/formulations/formulations.hpp>
+#include <taut/formulations/registry.hpp>
 
 namespace taut {
 
-namespace {
-
-template <int D>
-struct Entry {
-  const char* name;
-  std::unique_ptr<Formulation<D>> (*make)(const FormulationSetup<D>&);
-  MaterialsMeet materials = MaterialsMeet::in_particles;
-};
-
-template <int D>
-const std::vector<Entry<D>>& formulation_registry() {
-  static const std::vector<Entry<D>> entries = {
-      {"tl_displacement", make_tl_displacement<D>, MaterialsMeet::in_twins},
-      {"tl_bond_associated", make_tl_bond_associated<D>, MaterialsMeet::in_twins},
-      {"tl_stress_points", make_tl_stress_points<D>, MaterialsMeet::in_cells},
-      {"ul_basic", make_ul_basic<D>},
-      {"ul_artificial_stress", make_ul_artificial_stress<D>},
-  };
-  return entries;
-}
-
-}  // namespace
-
-std::vector<std::string> formulation_names() {
-  std::vector<std::string> names;
-  for (const auto& entry : formulation_registry<1>()) names.emplace_back(entry.name);
-  return names;
-}
-
-MaterialsMeet materials_meet(std::string_view formulation) {
-  for (const auto& entry : formulation_registry<1>())
-    if (formulation == entry.name) return entry.materials;
-  return MaterialsMeet::in_particles;
-}
-
 template <int D>
 std::unique_ptr<Formulation<D>> make_formulation(const FormulationSetup<D>& setup) {
-  for (const auto& entry : formulation_registry<D>())
-    if (setup.method.formulation == entry.name) return entry.make(setup);
-  throw InputError(fmt::format("unknown formulation \"{}\"; valid: {}", setup.method.formulation,
-                               join_names(formulation_names())));
+  const FormulationEntry& entry = formulation_registry().find(setup.method.formulation);
+  for (const auto& material : setup.particles.materials)
+    if (kind_of(*material) != entry.traits.material)
+      throw InputError(fmt::format("{} needs {}; \"{}\" gives {}. Valid: {}", entry.name,
+                                   describe(entry.traits.material), material->name(),
+                                   entry.traits.material == MaterialKind::stress
+                                       ? "stress rates"
+                                       : "stresses of a deformation gradient",
+                                   join_names(material_names(entry.traits.material))));
+  return maker_of<D>(entry, "formulation")(setup);
 }
 
 namespace {

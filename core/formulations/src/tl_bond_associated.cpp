@@ -39,8 +39,6 @@ class TlBondAssociated final : public TotalLagrangian<D> {
  public:
   explicit TlBondAssociated(const FormulationSetup<D>& setup)
       : Base(setup), H_(static_cast<std::size_t>(p_.total), D * D) {
-    if (setup.method.zero_energy_control > 0)
-      throw InputError("tl_bond_associated has no zero-energy modes: zero_energy_control must be 0");
     share_volumes();
     this->frequency_ =
         highest_frequency<D>(materials_, [this](const LawsAtRest& laws) { return stiffest_mode(laws); });
@@ -338,12 +336,16 @@ double TlBondAssociated<D>::stiffest_mode(const LawsAtRest& laws) {
 
 }  // namespace
 
-template <int D>
-std::unique_ptr<Formulation<D>> make_tl_bond_associated(const FormulationSetup<D>& setup) {
-  return std::make_unique<TlBondAssociated<D>>(setup);
+FormulationEntry tl_bond_associated_entry() {
+  const FormulationTraits traits{.stress = StressAt::bonds, .materials = MaterialsMeet::in_twins};
+  return {.name = "tl_bond_associated",
+          .line =
+              "a deformation gradient and a stress a bond: no zero-energy modes, no coefficient; good on "
+              "lattices",
+          .fails = "on irregular clouds it does not converge; the material is evaluated for every bond",
+          .make = formulation_makers<TlBondAssociated>(),
+          .traits = traits,
+          .parameters = pair_parameters(traits)};
 }
-template std::unique_ptr<Formulation<1>> make_tl_bond_associated<1>(const FormulationSetup<1>&);
-template std::unique_ptr<Formulation<2>> make_tl_bond_associated<2>(const FormulationSetup<2>&);
-template std::unique_ptr<Formulation<3>> make_tl_bond_associated<3>(const FormulationSetup<3>&);
 
 }  // namespace taut

@@ -246,12 +246,22 @@ double TlDisplacement<D>::stiffest_mode(const LawsAtRest& laws) {
 
 }  // namespace
 
-template <int D>
-std::unique_ptr<Formulation<D>> make_tl_displacement(const FormulationSetup<D>& setup) {
-  return std::make_unique<TlDisplacement<D>>(setup);
+FormulationEntry tl_displacement_entry() {
+  const FormulationTraits traits{.materials = MaterialsMeet::in_twins};
+  std::vector<Parameter> parameters = pair_parameters(traits);
+  parameters.push_back(
+      number_parameter("zero_energy_control", traits.zero_energy_control, Interval::non_negative(), "",
+                       "coefficient of the penalty on what neighbours do and gradients do not "
+                       "see; stiffens where large; 0 = absent"));
+  return {
+      .name = "tl_displacement",
+      .line =
+          "total Lagrangian, displacements; F = Σ x ⊗ g, forces by the exact adjoint; optional zero-energy "
+          "control, derived from an energy",
+      .fails = "with `corrected` operators on irregular clouds (use `antisymmetric` or `compatible`)",
+      .make = formulation_makers<TlDisplacement>(),
+      .traits = traits,
+      .parameters = std::move(parameters)};
 }
-template std::unique_ptr<Formulation<1>> make_tl_displacement<1>(const FormulationSetup<1>&);
-template std::unique_ptr<Formulation<2>> make_tl_displacement<2>(const FormulationSetup<2>&);
-template std::unique_ptr<Formulation<3>> make_tl_displacement<3>(const FormulationSetup<3>&);
 
 }  // namespace taut

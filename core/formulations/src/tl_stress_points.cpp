@@ -447,12 +447,23 @@ double TlStressPoints<D>::stiffest_mode(const LawsAtRest& laws) {
 
 }  // namespace
 
-template <int D>
-std::unique_ptr<Formulation<D>> make_tl_stress_points(const FormulationSetup<D>& setup) {
-  return std::make_unique<TlStressPoints<D>>(setup);
+FormulationEntry tl_stress_points_entry() {
+  return {
+      .name = "tl_stress_points",
+      .line =
+          "stress on the cells between the particles of a node-centred lattice, jittered or not; hourglass "
+          "control that bends cells right",
+      .fails = "on clouds without cells (files, cell-centred lattices)",
+      .make = formulation_makers<TlStressPoints>(),
+      .traits = {.stress = StressAt::cells,
+                 .pairs = false,
+                 .operators = false,
+                 .cells = true,
+                 .materials = MaterialsMeet::in_cells,
+                 .zero_energy_control = 1},
+      .parameters = {number_parameter("zero_energy_control", 1, Interval::non_negative(), "",
+                                      "hourglass stiffness over the one that bends cells as a beam bends; "
+                                      "0 = absent")}};
 }
-template std::unique_ptr<Formulation<1>> make_tl_stress_points<1>(const FormulationSetup<1>&);
-template std::unique_ptr<Formulation<2>> make_tl_stress_points<2>(const FormulationSetup<2>&);
-template std::unique_ptr<Formulation<3>> make_tl_stress_points<3>(const FormulationSetup<3>&);
 
 }  // namespace taut

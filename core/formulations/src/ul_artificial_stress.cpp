@@ -40,15 +40,7 @@ class UlArtificialStress final : public UpdatedLagrangian<D> {
  public:
   explicit UlArtificialStress(const FormulationSetup<D>& setup) : Base(setup), R_(p_.X.particles(), S) {
     const Method& m = setup.method;
-    if (!(m.artificial_stress >= 0))
-      throw InputError(fmt::format("artificial_stress = {} must not be negative", m.artificial_stress));
-    if (m.artificial_stress_weight != "kernel" && m.artificial_stress_weight != "distance")
-      throw InputError(fmt::format("unknown artificial_stress_weight \"{}\"; valid: kernel, distance",
-                                   m.artificial_stress_weight));
     exponent_ = static_cast<int>(m.artificial_stress_exponent);
-    if (exponent_ != m.artificial_stress_exponent || exponent_ < 1 || exponent_ > 16)
-      throw InputError(fmt::format("artificial_stress_exponent = {} must be a whole number from 1 to 16",
-                                   m.artificial_stress_exponent));
     by_distance_ = m.artificial_stress_weight == "distance";
     scale_ = by_distance_ ? 1 / (p_.dx * p_.dx) : 1 / this->kernel_.value(p_.dx, this->h_);
   }
@@ -100,12 +92,19 @@ void UlArtificialStress<D>::update_artificial_stress() {
 
 }  // namespace
 
-template <int D>
-std::unique_ptr<Formulation<D>> make_ul_artificial_stress(const FormulationSetup<D>& setup) {
-  return std::make_unique<UlArtificialStress<D>>(setup);
+FormulationEntry ul_artificial_stress_entry() {
+  std::vector<Parameter> parameters = updated_lagrangian_parameters();
+  parameters.push_back(
+      number_parameter("artificial_stress", 0.3, Interval::non_negative(), "", "the factor ε"));
+  parameters.push_back(whole_parameter("artificial_stress_exponent", 4, 1, 16, "the exponent n"));
+  parameters.push_back(
+      choice_parameter("artificial_stress_weight", "kernel", {"kernel", "distance"}, "W(r)/W(dx), or r/dx"));
+  return {.name = "ul_artificial_stress",
+          .line = "the same with the artificial stress of Gray, Monaghan and Swift (2001)",
+          .fails = "later in tension; too soft before",
+          .make = formulation_makers<UlArtificialStress>(),
+          .traits = updated_lagrangian_traits(),
+          .parameters = std::move(parameters)};
 }
-template std::unique_ptr<Formulation<1>> make_ul_artificial_stress<1>(const FormulationSetup<1>&);
-template std::unique_ptr<Formulation<2>> make_ul_artificial_stress<2>(const FormulationSetup<2>&);
-template std::unique_ptr<Formulation<3>> make_ul_artificial_stress<3>(const FormulationSetup<3>&);
 
 }  // namespace taut

@@ -20,12 +20,13 @@ class UlBasic final : public UpdatedLagrangian<D> {
 
 }  // namespace
 
-template <int D>
-std::unique_ptr<Formulation<D>> make_ul_basic(const FormulationSetup<D>& setup) {
-  return std::make_unique<UlBasic<D>>(setup);
+FormulationEntry ul_basic_entry() {
+  return {.name = "ul_basic",
+          .line = "updated Lagrangian, stress by Jaumann's rate, pressure by an equation of state",
+          .fails = "tension: particles clump and the body tears (tensile instability)",
+          .make = formulation_makers<UlBasic>(),
+          .traits = updated_lagrangian_traits(),
+          .parameters = updated_lagrangian_parameters()};
 }
-template std::unique_ptr<Formulation<1>> make_ul_basic<1>(const FormulationSetup<1>&);
-template std::unique_ptr<Formulation<2>> make_ul_basic<2>(const FormulationSetup<2>&);
-template std::unique_ptr<Formulation<3>> make_ul_basic<3>(const FormulationSetup<3>&);
 
 }  // namespace taut

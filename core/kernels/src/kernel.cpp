@@ -5,6 +5,7 @@
 #include <numbers>
 #include <taut/base/error.hpp>
 #include <taut/kernels/kernel.hpp>
+#include <taut/kernels/registry.hpp>
 
 namespace taut {
 namespace {
@@ -73,24 +74,45 @@ double sinc5_slope(double q) {
   return 5 * pi / 2 * f2 * f2 * sinc_slope(z);
 }
 
-struct Profile {
-  std::string_view name;
-  double radius_factor;
-  double (*shape)(double q);
-  double (*slope)(double q);
-  std::array<double, 3> constants;  // in 1D, 2D, 3D; zero where quadrature finds them
-};
-
-constexpr std::array<Profile, 8> profiles{{
-    {"lucy", 1, lucy, lucy_slope, {5.0 / 4, 5 / pi, 105 / (16 * pi)}},
-    {"cubic_spline", 2, cubic_spline, cubic_spline_slope, {2.0 / 3, 10 / (7 * pi), 1 / pi}},
-    {"gaussian", 3, gaussian, gaussian_slope, {}},
-    {"mollifier", 1, mollifier, mollifier_slope, {}},
-    {"modified_mollifier", 1, modified_mollifier, modified_mollifier_slope, {}},
-    {"quadratic", 2, quadratic, quadratic_slope, {1, 2 / pi, 5 / (4 * pi)}},
-    {"wendland_c2", 2, wendland_c2, wendland_c2_slope, {3.0 / 4, 7 / (4 * pi), 21 / (16 * pi)}},
-    {"sinc5", 2, sinc5, sinc5_slope, {}},
-}};
+std::vector<KernelEntry> own_kernels() {
+  return {
+      {"lucy",
+       "one cubic over the support (Lucy 1977)",
+       1,
+       lucy,
+       lucy_slope,
+       false,
+       {5.0 / 4, 5 / pi, 105 / (16 * pi)}},
+      {"cubic_spline",
+       "piecewise cubic (Monaghan and Lattanzio 1985)",
+       2,
+       cubic_spline,
+       cubic_spline_slope,
+       false,
+       {2.0 / 3, 10 / (7 * pi), 1 / pi}},
+      {"gaussian",
+       "cut off at 3 h, where it still has 1.2e-4 of its centre value (Gingold and Monaghan 1977)", 3,
+       gaussian, gaussian_slope, true},
+      {"mollifier", "exp(-1 / (1 - q^2)): all derivatives vanish at the edge", 1, mollifier, mollifier_slope},
+      {"modified_mollifier", "the mollifier times (1 - q^2)^8, which comes close to a Gaussian", 1,
+       modified_mollifier, modified_mollifier_slope},
+      {"quadratic",
+       "a parabola, with a kink at the centre (Johnson, Stryk and Beissel 1996)",
+       2,
+       quadratic,
+       quadratic_slope,
+       false,
+       {1, 2 / pi, 5 / (4 * pi)}},
+      {"wendland_c2",
+       "positive definite, twice differentiable (Wendland 1995)",
+       2,
+       wendland_c2,
+       wendland_c2_slope,
+       false,
+       {3.0 / 4, 7 / (4 * pi), 21 / (16 * pi)}},
+      {"sinc5", "the fifth power of a sinc (Cabezon, Garcia-Senz and Relano 2008)", 2, sinc5, sinc5_slope},
+  };
+}
 
 // Integral of f over [0, length] by the tanh-sinh rule (Takahasi and Mori 1974): round-off is reached for the
 // smooth shapes that come here, whatever their behaviour at the ends.
@@ -106,17 +128,26 @@ double integrate(double length, F&& f) {
   return sum * step * length;
 }
 
-using Constants = std::array<std::array<double, 3>, profiles.size()>;
-
-Constants find_constants() {
+// The constants that are not given.
+void normalise(KernelEntry& entry) {
   constexpr std::array<double, 3> sphere{2, 2 * pi, 4 * pi};
-  Constants all{};
-  for (std::size_t k = 0; k < profiles.size(); ++k)
-    for (std::size_t d = 0; d < 3; ++d) {
-      const Profile& p = profiles[k];
-      const auto shell = [&](double q) { return q < p.radius_factor ? p.shape(q) * std::pow(q, d) : 0.0; };
-      all[k][d] = p.constants[d] > 0 ? p.constants[d] : 1 / (sphere[d] * integrate(p.radius_factor, shell));
-    }
+  for (std::size_t d = 0; d < 3; ++d) {
+    double& constant = entry.constants[d];
+    const auto shell = [&](double q) {
+      return q < entry.radius_factor ? entry.shape(q) * std::pow(q, d) : 0.0;
+    };
+    if (!(constant > 0)) constant = 1 / (sphere[d] * integrate(entry.radius_factor, shell));
+    if (!(constant > 0) || !std::isfinite(constant))
+      throw InputError(fmt::format("kernel \"{}\": its shape has no positive integral", entry.name));
+  }
+}
+
+Registry<KernelEntry>& registry() {
+  static Registry<KernelEntry> all = [] {
+    std::vector<KernelEntry> own = own_kernels();
+    for (KernelEntry& entry : own) normalise(entry);
+    return Registry<KernelEntry>("kernel", std::move(own));
+  }();
   return all;
 }
 
@@ -124,39 +155,37 @@ double power(double h, int n) { return n == 1 ? h : n == 2 ? h * h : n == 3 ? h 
 
 }  // namespace
 
-Kernel::Kernel(std::string_view name, int dimension) : dimension_(dimension) {
-  static const Constants constants = find_constants();
-  if (dimension < 1 || dimension > 3)
-    throw InputError(fmt::format("kernel {}: dimension {} is not 1, 2 or 3", name, dimension));
-  for (std::size_t k = 0; k < profiles.size(); ++k)
-    if (profiles[k].name == name) {
-      shape_ = static_cast<int>(k);
-      constant_ = constants[k][static_cast<std::size_t>(dimension - 1)];
-      return;
-    }
-  throw InputError(fmt::format("unknown kernel \"{}\"; valid: {}", name, join_names(names())));
+const Registry<KernelEntry>& kernel_registry() { return registry(); }
+
+void add_kernel(KernelEntry entry) {
+  if (!entry.shape || !entry.slope || !(entry.radius_factor > 0) || !std::isfinite(entry.radius_factor))
+    throw InputError(
+        fmt::format("kernel \"{}\" needs a shape, its slope and a positive radius_factor", entry.name));
+  normalise(entry);
+  registry().add(std::move(entry));
 }
 
-std::string_view Kernel::name() const { return profiles[static_cast<std::size_t>(shape_)].name; }
+Kernel::Kernel(std::string_view name, int dimension) : dimension_(dimension) {
+  if (dimension < 1 || dimension > 3)
+    throw InputError(fmt::format("kernel {}: dimension {} is not 1, 2 or 3", name, dimension));
+  entry_ = &registry().find(name);
+  constant_ = entry_->constants[static_cast<std::size_t>(dimension - 1)];
+}
 
-double Kernel::radius_factor() const { return profiles[static_cast<std::size_t>(shape_)].radius_factor; }
+std::string_view Kernel::name() const { return entry_->name; }
+
+double Kernel::radius_factor() const { return entry_->radius_factor; }
 
 double Kernel::value(double r, double h) const {
-  const Profile& p = profiles[static_cast<std::size_t>(shape_)];
   const double q = r / h;
-  return q >= p.radius_factor ? 0 : constant_ * p.shape(q) / power(h, dimension_);
+  return q >= entry_->radius_factor ? 0 : constant_ * entry_->shape(q) / power(h, dimension_);
 }
 
 double Kernel::derivative(double r, double h) const {
-  const Profile& p = profiles[static_cast<std::size_t>(shape_)];
   const double q = r / h;
-  return q >= p.radius_factor ? 0 : constant_ * p.slope(q) / power(h, dimension_ + 1);
+  return q >= entry_->radius_factor ? 0 : constant_ * entry_->slope(q) / power(h, dimension_ + 1);
 }
 
-std::vector<std::string> Kernel::names() {
-  std::vector<std::string> all;
-  for (const Profile& p : profiles) all.emplace_back(p.name);
-  return all;
-}
+std::vector<std::string> Kernel::names() { return registry().names(); }
 
 }  // namespace taut

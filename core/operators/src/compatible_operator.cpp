@@ -2,8 +2,9 @@
 #include <taut/base/powers.hpp>
 #include <taut/operators/closure_system.hpp>
 #include <taut/operators/compatible_operator.hpp>
+#include <taut/operators/operator_entries.hpp>
+#include <taut/operators/operator_parts.hpp>
 #include <taut/operators/pair_passes.hpp>
-#include <taut/operators/pair_vectors.hpp>
 
 namespace taut {
 
@@ -68,11 +69,48 @@ double make_compatible(const Particles<D>& p, const PairList& pairs, int iterati
   return residual;
 }
 
-template bool is_closed<1>(const Particles<1>&, const PairList&, const PairOperator<1>&);
-template bool is_closed<2>(const Particles<2>&, const PairList&, const PairOperator<2>&);
-template bool is_closed<3>(const Particles<3>&, const PairList&, const PairOperator<3>&);
-template double make_compatible<1>(const Particles<1>&, const PairList&, int, PairOperator<1>&);
-template double make_compatible<2>(const Particles<2>&, const PairList&, int, PairOperator<2>&);
-template double make_compatible<3>(const Particles<3>&, const PairList&, int, PairOperator<3>&);
+template <int D>
+bool start_closure(const OperatorSetup<D>& setup, PairOperator<D>& op) {
+  const bool automatic = setup.method.pair_precision == PairPrecision::automatic;
+  op = make_corrected(setup);
+  if (automatic && is_closed(setup.particles, setup.pairs, op)) return false;
+  if (automatic && !is_stored(op.precision)) {
+    Method stored = setup.method;
+    stored.pair_precision = PairPrecision::single_precision;
+    op = make_corrected<D>({stored, setup.particles, setup.pairs, setup.kernel, setup.smoothing_length});
+  }
+  require_stored(setup.method, op.precision);
+  return true;
+}
+
+namespace {
+
+template <int D>
+PairOperator<D> make(const OperatorSetup<D>& setup) {
+  PairOperator<D> op;
+  if (!start_closure(setup, op)) return op;
+  make_compatible(setup.particles, setup.pairs, setup.method.compatible_iterations, op);
+  make_matrices(setup, true, op);  // linear exactness of the vectors as stored
+  return op;
+}
+
+}  // namespace
+
+OperatorEntry compatible_entry() {
+  return {.name = "compatible",
+          .line = "linear exactness, closure and energy conjugacy at once: accurate on irregular clouds too",
+          .make = {make<1>, make<2>, make<3>},
+          .traits = {.areas = true, .adjoint = true},
+          .parameters = {closure_iterations()}};
+}
+
+#define TAUT_INSTANTIATE(D)                                                                 \
+  template bool is_closed<D>(const Particles<D>&, const PairList&, const PairOperator<D>&); \
+  template bool start_closure<D>(const OperatorSetup<D>&, PairOperator<D>&);                \
+  template double make_compatible<D>(const Particles<D>&, const PairList&, int, PairOperator<D>&);
+TAUT_INSTANTIATE(1)
+TAUT_INSTANTIATE(2)
+TAUT_INSTANTIATE(3)
+#undef TAUT_INSTANTIATE
 
 }  // namespace taut

@@ -8,12 +8,9 @@
 #include <taut/base/error.hpp>
 #include <taut/base/parallel.hpp>
 #include <taut/base/powers.hpp>
-#include <taut/operators/antisymmetric_operator.hpp>
 #include <taut/operators/block_dictionary.hpp>
-#include <taut/operators/compatible_operator.hpp>
-#include <taut/operators/operators.hpp>
+#include <taut/operators/operator_parts.hpp>
 #include <taut/operators/pair_passes.hpp>
-#include <taut/operators/quadratic_operator.hpp>
 #include <taut/operators/shared_vectors.hpp>
 
 namespace taut {
@@ -40,26 +37,6 @@ void fill_vectors(const Particles<D>& p, const PairList& pairs, const Kernel& ke
           out[static_cast<std::size_t>((k * D + d) * lanes + lane)] = static_cast<Real>(slope * rab[d]);
       });
   });
-}
-
-// The vectors along the kernel's gradient in the precision of `op`, or what they are shared or recomputed
-// from.
-template <int D>
-void fill_radial_vectors(const Particles<D>& p, const PairList& pairs, const Kernel& kernel, double h,
-                         PairOperator<D>& op) {
-  switch (op.precision) {
-    case PairPrecision::double_precision:
-      fill_vectors(p, pairs, kernel, h, op, op.vectors_d);
-      break;
-    case PairPrecision::shared:
-      share_vectors<D>(p, pairs, kernel, h, op);
-      break;
-    case PairPrecision::recomputed:
-      op.table = std::make_shared<const KernelTable>(kernel, h);
-      break;
-    default:
-      fill_vectors(p, pairs, kernel, h, op, op.vectors_f);
-  }
 }
 
 // The sums that a slice's matrices are made of.
@@ -184,16 +161,17 @@ void fill_matrices(bool corrected, const Particles<D>& p, const PairList& pairs,
 
 // What `automatic` means for these particles.
 template <int D>
-PairPrecision resolve(const Method& method, const Particles<D>& p, const PairList& pairs, double support,
-                      const Field& weights) {
-  if (method.pair_precision != PairPrecision::automatic) return method.pair_precision;
-  if (!p.spacing.empty()) return PairPrecision::single_precision;
+PairPrecision resolve(const OperatorSetup<D>& setup, bool shareable, const Field& weights) {
+  if (setup.method.pair_precision != PairPrecision::automatic) return setup.method.pair_precision;
+  if (!shareable || !setup.particles.spacing.empty()) return PairPrecision::single_precision;
   // A slot that nothing is shared with costs twice the bytes of one in single precision.
   constexpr double worthwhile = 0.4;
-  return method.operators != "quadratic" && distinct_fraction<D>(p, pairs, support, weights) < worthwhile
+  return distinct_fraction<D>(setup.particles, setup.pairs, setup.support(), weights) < worthwhile
              ? PairPrecision::shared
              : PairPrecision::single_precision;
 }
+
+}  // namespace
 
 bool is_stored(PairPrecision precision) {
   return precision == PairPrecision::single_precision || precision == PairPrecision::double_precision;
@@ -205,75 +183,59 @@ void require_stored(const Method& method, PairPrecision precision) {
                                  method.operators, to_string(precision)));
 }
 
-}  // namespace
+template <int D>
+PairOperator<D> start_operator(const OperatorSetup<D>& setup, bool shareable, Field weight) {
+  PairOperator<D> op;
+  if (weight.empty())
+    op.weight_product = int_power(setup.particles.dx, 2 * D);
+  else
+    op.weight = std::move(weight);
+  op.precision = resolve<D>(setup, shareable, op.weight);
+  if (!setup.particles.spacing.empty() && !is_stored(op.precision))
+    throw InputError(fmt::format("the pair vectors of graded clouds cannot be {}: choose single or double",
+                                 to_string(op.precision)));
+  if (!shareable) require_stored(setup.method, op.precision);
+  return op;
+}
 
-bool needs_areas(std::string_view operators) {
-  return operators == "compatible" || operators == "antisymmetric";
+template <int D>
+void fill_radial_vectors(const OperatorSetup<D>& setup, PairOperator<D>& op) {
+  const auto& [method, p, pairs, kernel, h] = setup;
+  switch (op.precision) {
+    case PairPrecision::double_precision:
+      fill_vectors(p, pairs, kernel, h, op, op.vectors_d);
+      break;
+    case PairPrecision::shared:
+      share_vectors<D>(p, pairs, kernel, h, op);
+      break;
+    case PairPrecision::recomputed:
+      op.table = std::make_shared<const KernelTable>(kernel, h);
+      break;
+    default:
+      fill_vectors(p, pairs, kernel, h, op, op.vectors_f);
+  }
 }
-double rough_limit(std::string_view operators) {
-  // From bench/HEALTH.md. What does not quite close is softer: it makes up for part of what bending lacks.
-  return operators == "antisymmetric" ? 0.5 : 0.2;
-}
-std::vector<std::string> operator_names() {
-  return {"standard", "corrected", "compatible", "antisymmetric", "quadratic"};
+
+template <int D>
+void make_matrices(const OperatorSetup<D>& setup, bool corrected, PairOperator<D>& op) {
+  with_payload<D>(op, setup.pairs, setup.particles.X, [&](const auto& payload) {
+    fill_matrices<D>(corrected, setup.particles, setup.pairs, payload, op);
+  });
 }
 
 template <int D>
 PairOperator<D> make_operator(const Method& method, const Particles<D>& p, const PairList& pairs,
                               const Kernel& kernel, double h) {
-  const std::string& name = method.operators;
-  const auto names = operator_names();
-  if (std::find(names.begin(), names.end(), name) == names.end())
-    throw InputError(fmt::format("unknown operators \"{}\"; valid: {}", name, join_names(names)));
-  const double support = kernel.radius_factor() * h;
-
-  PairOperator<D> op;
-  if (name == "standard")
-    op.weight = p.V;
-  else
-    op.weight_product = int_power(p.dx, 2 * D);
-  op.precision = resolve<D>(method, p, pairs, support, op.weight);
-  if (!p.spacing.empty() && !is_stored(op.precision))
-    throw InputError(fmt::format("the pair vectors of graded clouds cannot be {}: choose single or double",
-                                 to_string(op.precision)));
-  const auto make_matrices = [&] {
-    with_payload<D>(op, pairs, p.X, [&](const auto& payload) {
-      fill_matrices<D>(name != "standard", p, pairs, payload, op);
-    });
-  };
-  if (name == "quadratic") {
-    require_stored(method, op.precision);
-    if (!p.spacing.empty())
-      throw InputError(
-          "quadratic operators have one support for all particles, which this cloud is too graded for: use "
-          "compatible operators");
-    make_quadratic(p, pairs, kernel, h, op);
-  } else {
-    fill_radial_vectors(p, pairs, kernel, h, op);
-  }
-  make_matrices();
-  const bool automatic = method.pair_precision == PairPrecision::automatic;
-  const bool antisymmetric = name == "antisymmetric";
-  if (needs_areas(name) && !(automatic && is_closed(p, pairs, op))) {
-    if (automatic && !is_stored(op.precision)) {
-      op = {};
-      op.weight_product = int_power(p.dx, 2 * D);
-      fill_radial_vectors(p, pairs, kernel, h, op);
-      make_matrices();
-    }
-    require_stored(method, op.precision);
-    if (antisymmetric) {
-      make_antisymmetric<D>(p, pairs, method.compatible_iterations, op, make_matrices);
-    } else {
-      make_compatible(p, pairs, method.compatible_iterations, op);
-      make_matrices();  // linear exactness of the vectors as stored
-    }
-  }
+  const OperatorEntry& entry = operator_registry().find(method.operators);
+  PairOperator<D> op = maker_of<D>(entry, "operators")(OperatorSetup<D>{method, p, pairs, kernel, h});
   if (op.precision != PairPrecision::recomputed) op.weight = {};  // they are in the vectors
   return op;
 }
 
 #define TAUT_INSTANTIATE(D)                                                                      \
+  template PairOperator<D> start_operator<D>(const OperatorSetup<D>&, bool, Field);              \
+  template void fill_radial_vectors<D>(const OperatorSetup<D>&, PairOperator<D>&);               \
+  template void make_matrices<D>(const OperatorSetup<D>&, bool, PairOperator<D>&);               \
   template PairOperator<D> make_operator<D>(const Method&, const Particles<D>&, const PairList&, \
                                             const Kernel&, double);
 TAUT_INSTANTIATE(1)

@@ -5,9 +5,10 @@
 #include <cmath>
 #include <taut/base/describe.hpp>
 #include <taut/base/error.hpp>
-#include <taut/base/small_solve.hpp>
 #include <taut/base/parallel.hpp>
-#include <taut/operators/pair_vectors.hpp>
+#include <taut/base/small_solve.hpp>
+#include <taut/operators/operator_entries.hpp>
+#include <taut/operators/operator_parts.hpp>
 #include <taut/operators/quadratic_operator.hpp>
 
 namespace taut {
@@ -90,7 +91,8 @@ class QuadraticFit {
     using Columns = Fixed<terms, D>;
     const Columns unit = Columns::Identity();
     Columns columns = factors.solve(unit);
-    columns += factors.solve(Columns(unit - normal.lazyProduct(columns)));  // what a pivot of 1e-5 costs in digits
+    columns +=
+        factors.solve(Columns(unit - normal.lazyProduct(columns)));  // what a pivot of 1e-5 costs in digits
     auto& C = coefficients_[static_cast<std::size_t>(a)];
     C = (scale.asDiagonal() * columns * scale.template head<D>().asDiagonal()).transpose() / p_.dx;
     double sum = 0;
@@ -131,6 +133,32 @@ void make_quadratic(const Particles<D>& p, const PairList& pairs, const Kernel& 
         return std::pair<Vec<D>, Vec<D>>(fit.vector(a, X), -fit.vector(b, -X));
       },
       op);
+}
+
+namespace {
+
+template <int D>
+PairOperator<D> make(const OperatorSetup<D>& setup) {
+  PairOperator<D> op = start_operator(setup, false);
+  if (!setup.particles.spacing.empty())
+    throw InputError(
+        "quadratic operators have one support for all particles, which this cloud is too graded for: use "
+        "compatible operators");
+  make_quadratic(setup.particles, setup.pairs, setup.kernel, setup.smoothing_length, op);
+  make_matrices(setup, true, op);
+  return op;
+}
+
+}  // namespace
+
+OperatorEntry quadratic_entry() {
+  return {
+      .name = "quadratic",
+      .line =
+          "gradients of quadratic fields exact; does not close, so that it does not converge on irregular "
+          "clouds; takes `support_dx` from about 2.1",
+      .make = {make<1>, make<2>, make<3>},
+      .traits = {.exact = 2, .adjoint = true, .support_dx = 2.4}};
 }
 
 template void make_quadratic<1>(const Particles<1>&, const PairList&, const Kernel&, double,

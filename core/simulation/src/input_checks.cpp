@@ -9,44 +9,11 @@
 
 namespace taut {
 
-namespace {
-
-void one_of(const char* what, const std::string& name, const std::vector<std::string>& valid) {
-  if (std::find(valid.begin(), valid.end(), name) == valid.end())
-    throw InputError(fmt::format("unknown {} \"{}\"; valid: {}", what, name, join_names(valid)));
-}
-
-void not_negative(const char* what, double value, double most = std::numeric_limits<double>::max()) {
-  if (!(value >= 0) || !std::isfinite(value))
-    throw InputError(fmt::format("{} = {:g} must not be negative", what, value));
-  if (value > most) throw InputError(fmt::format("{} = {:g} must be {:g} at most", what, value, most));
-}
-
-}  // namespace
-
 void check_values(const Method& method) {
-  if (!(method.support_dx > 1) || method.support_dx > 20)
-    throw InputError(fmt::format("support_dx = {:g} must lie between 1 (nearest neighbours excluded) and 20",
-                                 method.support_dx));
-  not_negative("zero_energy_control", method.zero_energy_control.value_or(0));
-  not_negative("viscosity", method.viscosity);
-  constexpr double widest_skin = 10;  // a thousand times the pairs in 3D
-  not_negative("skin", method.skin, widest_skin);
-  constexpr int most_iterations = 100000;
-  if (method.compatible_iterations < 0 || method.compatible_iterations > most_iterations)
-    throw InputError(fmt::format("compatible_iterations = {} must lie between 0 and {}",
-                                 method.compatible_iterations, most_iterations));
   if (*to_string(method.pair_precision) == '\0')
     throw InputError(fmt::format("pair_precision: the value {} of PairPrecision has no name; valid: {}",
                                  static_cast<int>(method.pair_precision),
                                  join_names(pair_precision_names())));
-  one_of("velocity_gradient", method.velocity_gradient, {"standard", "corrected"});
-  one_of("artificial_stress_weight", method.artificial_stress_weight, {"kernel", "distance"});
-  not_negative("artificial_stress", method.artificial_stress);
-  const double exponent = method.artificial_stress_exponent;
-  if (!(exponent >= 1 && exponent <= 16) || exponent != std::floor(exponent))
-    throw InputError(
-        fmt::format("artificial_stress_exponent = {} must be a whole number from 1 to 16", exponent));
 }
 
 namespace {

@@ -7,7 +7,7 @@
 #include <taut/base/powers.hpp>
 #include <taut/formulations/assembly.hpp>
 #include <taut/formulations/auto_method.hpp>
-#include <taut/formulations/formulations.hpp>
+#include <taut/formulations/registry.hpp>
 #include <taut/geometry/local_origin.hpp>
 #include <taut/integrators/integrator.hpp>
 #include <taut/kernels/kernel.hpp>
@@ -21,20 +21,6 @@
 namespace taut {
 
 namespace {
-
-// Names are checked when they are given, not minutes later.
-template <int D>
-void check(const Method& method) {
-  const auto one_of = [](const char* what, const std::string& name, const std::vector<std::string>& valid) {
-    if (std::find(valid.begin(), valid.end(), name) == valid.end())
-      throw InputError(fmt::format("unknown {} \"{}\"; valid: {}", what, name, join_names(valid)));
-  };
-  one_of("formulation", method.formulation, formulation_names());
-  one_of("operators", method.operators, operator_names());
-  one_of("kernel", method.kernel, Kernel::names());
-  search_method(method.neighbours);
-  check_values(method);
-}
 
 /// Marks a call that is under way.
 class Busy {
@@ -111,7 +97,7 @@ std::vector<Index> SimulationImpl<D>::places(std::vector<Index> ids) const {
 template <int D>
 const Interfaces<D>* SimulationImpl<D>::met() const {
   return interfaces && interfaces->resolved() &&
-                 materials_meet(method.formulation) != MaterialsMeet::in_particles
+                 formulation_traits(method.formulation).materials != MaterialsMeet::in_particles
              ? interfaces.get()
              : nullptr;
 }
@@ -121,11 +107,11 @@ Simulation<D>::Simulation(Cloud<D> cloud, std::shared_ptr<const Material<D>> mat
     : impl_(std::make_shared<SimulationImpl<D>>()) {
   if (!material) throw InputError("a simulation needs a material");
   check_cloud(cloud);
-  method = complete(method, cloud, *material);
-  check<D>(method);
+  check_values(method);
+  method = checked_method(complete(method, cloud, *material));
   // What the method has no use for.
-  if (!needs_areas(method.operators)) cloud.facets = {};
-  if (materials_meet(method.formulation) != MaterialsMeet::in_cells) {
+  if (!needs_areas(method)) cloud.facets = {};
+  if (formulation_traits(method.formulation).materials != MaterialsMeet::in_cells) {
     cloud.cells = {};
     cloud.cell_share = {};
   }
@@ -426,21 +412,21 @@ void build(SimulationImpl<D>& s) {
   const auto start = std::chrono::steady_clock::now();
   const bool areas_known = !s.cloud.B.empty() || !s.cloud.facets.empty();
   const Interfaces<D>* interfaces = s.met();
-  const MaterialsMeet meet = materials_meet(s.method.formulation);
+  const FormulationTraits& traits = formulation_traits(s.method.formulation);
   if (interfaces) interfaces->straighten(s.cloud);
-  if (needs_areas(s.method.operators) && s.planes.empty() && s.periods.empty()) enclose(s.cloud);
+  if (needs_areas(s.method) && s.planes.empty() && s.periods.empty()) enclose(s.cloud);
   open_facets_on<D>(s.planes, s.periods, s.cloud);
   const double widest = s.cloud.spacing.empty()
                             ? s.cloud.dx
                             : *std::max_element(s.cloud.spacing.begin(), s.cloud.spacing.end());
   const double reach = s.method.support_dx * widest * (1 + s.method.skin);
   for (const auto& material : s.materials) check_wave_speed(*material);
-  const bool twins = interfaces && meet == MaterialsMeet::in_twins;
+  const bool twins = interfaces && traits.materials == MaterialsMeet::in_twins;
   s.particles =
       assemble<D>(s.cloud, s.materials, s.material,
-                  {s.planes, s.periods, reach, meet == MaterialsMeet::in_particles}, interfaces, twins);
+                  {s.planes, s.periods, reach, traits.reference == Reference::updated}, interfaces, twins);
   // Areas that are guesses tell nothing. Forms that find their neighbours anew let bodies meet.
-  if (meet != MaterialsMeet::in_particles && (areas_known || s.cloud.body))
+  if (traits.reference == Reference::total && (areas_known || s.cloud.body))
     s.particles.rule = PairRule<D>::make(s.cloud, s.particles, s.planes, twins ? interfaces : nullptr, reach);
   if (!s.cloud.facets.empty()) s.place_facets();
   s.cloud.cells = {};  // the particles have them now

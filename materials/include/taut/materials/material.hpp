@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <taut/base/parameters.hpp>
 #include <taut/base/types.hpp>
 #include <vector>
 
@@ -21,6 +22,9 @@ struct MaterialParameters {
   double nu = 0;       ///< Poisson's ratio, -1 < nu < 0.5
   double density = 0;  ///< reference density [kg/m^3], > 0
   Plane plane = Plane::strain;
+  /// Of materials that have more than these: by the names of their entry (registry.hpp). What is not given
+  /// has its default there.
+  ParameterMap other{};
 
   double mu() const { return E / (2 * (1 + nu)); }                      ///< shear modulus [Pa]
   double lambda() const { return E * nu / ((1 + nu) * (1 - 2 * nu)); }  ///< first Lamé constant [Pa]
@@ -129,17 +133,9 @@ class Hypoelastic : public Material<D> {
   virtual Mat<3> cauchy_stress(const Mat<D>& s, double rho) const;
 };
 
-/// A material by its name:
-/// - `linear_elastic`: small strain, P = sigma(eps), eps = sym(F) - I. Not objective: rotation makes stress.
-///   Its Cauchy stress is sigma(eps) as well, for the theory makes no difference.
-/// - `st_venant_kirchhoff`: P = F S, S = lambda tr(E) I + 2 mu E, E = (F^T F - I) / 2.
-/// - `corotated_svk`: P = R S, R the rotation of F = R U: objective, not the derivative of an energy.
-/// - `neo_hookean`: P = mu (F - F^-T) + lambda ln J F^-T (Bonet and Wood 1997, section 5.4.3).
-/// - `hypoelastic`: Jaumann rate of the deviatoric stress, p = K (rho / rho0 - 1).
-///
-/// The last is a `Hypoelastic`, the others are `Hyperelastic`. 1D is uniaxial strain. Plane stress: S_33 = 0
-/// for the St. Venant–Kirchhoff laws; P_33 = 0 solved to round-off for neo_hookean (NaN where nu < 0 and a
-/// strong compression has no such state); a zero rate of sigma_33 for hypoelastic.
+/// A material of `material_registry()` (registry.hpp) by its name. In 1D all are in uniaxial strain. Plane
+/// stress: S_33 = 0 for the St. Venant–Kirchhoff laws; P_33 = 0 solved to round-off for neo_hookean (NaN
+/// where nu < 0 and a strong compression has no such state); a zero rate of sigma_33 for hypoelastic.
 ///
 /// \throws InputError listing the valid names, or for parameters out of range.
 template <int D>

@@ -7,16 +7,7 @@
 #include <limits>
 #include <memory>
 #include <taut/materials/material.hpp>
-
-/// Defines the factory that registry.cpp names: TAUT_MATERIAL(neo_hookean, NeoHookean).
-#define TAUT_MATERIAL(name, Class)                                                 \
-  template <int D>                                                                 \
-  std::unique_ptr<Material<D>> make_##name(const MaterialParameters& parameters) { \
-    return std::make_unique<Class<D>>(parameters);                                 \
-  }                                                                                \
-  template std::unique_ptr<Material<1>> make_##name<1>(const MaterialParameters&); \
-  template std::unique_ptr<Material<2>> make_##name<2>(const MaterialParameters&); \
-  template std::unique_ptr<Material<3>> make_##name<3>(const MaterialParameters&);
+#include <taut/materials/registry.hpp>
 
 namespace taut {
 

@@ -60,8 +60,8 @@ template <int D>
 double spanning_support(const Cloud<D>& cloud);
 
 /// The method with what it leaves open filled in: by the rules where it leaves all of it open; else what
-/// names no formulation is `tl_displacement`, and `corrected` operators, the kernel `wendland_c2` and a
-/// support of 1.5 dx stand for those that are not given.
+/// names no formulation is `tl_displacement`, and `corrected` operators, the kernel `wendland_c2` and the
+/// support that formulation and operators take at least (their traits) stand for those that are not given.
 template <int D>
 Method complete(const Method& method, const Cloud<D>& cloud, const Material<D>& material);
 /// The same without a body.

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <taut/boundary/mirror.hpp>
+#include <taut/formulations/pairs_at_rest.hpp>
 #include <taut/geometry/geometry.hpp>
 #include <taut/materials/material.hpp>
 #include <taut/neighbors/pair_list.hpp>
@@ -39,9 +40,5 @@ template <int D>
 Particles<D> assemble(const Cloud<D>& cloud, std::vector<std::shared_ptr<const Material<D>>> materials,
                       const std::vector<std::uint8_t>& material, const Surroundings<D>& around,
                       const Interfaces<D>* interfaces = nullptr, bool twins = false);
-
-/// The pairs of particles and their images in the reference configuration, within the supports of a method.
-template <int D>
-PairList find_pairs_at_rest(const Particles<D>& particles, const Method& method);
 
 }  // namespace taut

@@ -1,31 +1,15 @@
 #pragma once
 /// \file
-/// Makers of the formulations, each defined in its own file.
+/// Entries of taut's own formulations, each defined in the file of what it names.
 
-#include <memory>
-#include <string_view>
-#include <taut/formulations/formulation.hpp>
+#include <taut/formulations/registry.hpp>
 
 namespace taut {
 
-/// What a formulation makes of particles where materials meet.
-enum class MaterialsMeet {
-  in_particles,  ///< a particle is of one material
-  in_twins,      ///< a particle has a twin for each material, and pairs that do not leave it
-  in_cells       ///< materials are the cells'; a particle has mass of each
-};
-/// Of a formulation by its name, a valid one.
-MaterialsMeet materials_meet(std::string_view formulation);
-
-template <int D>
-std::unique_ptr<Formulation<D>> make_tl_displacement(const FormulationSetup<D>& setup);
-template <int D>
-std::unique_ptr<Formulation<D>> make_tl_bond_associated(const FormulationSetup<D>& setup);
-template <int D>
-std::unique_ptr<Formulation<D>> make_tl_stress_points(const FormulationSetup<D>& setup);
-template <int D>
-std::unique_ptr<Formulation<D>> make_ul_basic(const FormulationSetup<D>& setup);
-template <int D>
-std::unique_ptr<Formulation<D>> make_ul_artificial_stress(const FormulationSetup<D>& setup);
+FormulationEntry tl_displacement_entry();
+FormulationEntry tl_bond_associated_entry();
+FormulationEntry tl_stress_points_entry();
+FormulationEntry ul_basic_entry();
+FormulationEntry ul_artificial_stress_entry();
 
 }  // namespace taut

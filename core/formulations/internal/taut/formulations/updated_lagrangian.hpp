@@ -14,8 +14,8 @@
 #include <taut/base/error.hpp>
 #include <taut/base/parallel.hpp>
 #include <taut/base/simd.hpp>
-#include <taut/formulations/formulation.hpp>
 #include <taut/formulations/health_sweeps.hpp>
+#include <taut/formulations/registry.hpp>
 #include <taut/kernels/kernel.hpp>
 #include <taut/kernels/kernel_table.hpp>
 #include <taut/neighbors/search.hpp>
@@ -127,6 +127,24 @@ class UpdatedLagrangian : public Formulation<D> {
   std::vector<std::array<Index, 2>> nearest_;  // pairs that touch in the reference configuration
 };
 
+inline FormulationTraits updated_lagrangian_traits() {
+  return {.reference = Reference::updated,
+          .operators = false,
+          .material = MaterialKind::rate,
+          .energy = false,
+          .support_dx = 2.4};  // particles change neighbours: fewer would leave gaps
+}
+
+/// The parameters that these forms share.
+inline std::vector<Parameter> updated_lagrangian_parameters() {
+  std::vector<Parameter> all = pair_parameters(updated_lagrangian_traits());
+  all.push_back(number_parameter("viscosity", 0, Interval::non_negative(), "", "Monaghan's α; 0 = absent"));
+  all.push_back(number_parameter("skin", 0.1, {0, 2}, "R", "skin of the pair list over the support radius"));
+  all.push_back(choice_parameter("velocity_gradient", "standard", {"standard", "corrected"},
+                                 "plain, or linearly exact"));
+  return all;
+}
+
 /// The term of plain SPH: nothing.
 struct NoPairTerm {
   static constexpr bool present = false;
@@ -140,19 +158,8 @@ UpdatedLagrangian<D>::UpdatedLagrangian(const FormulationSetup<D>& setup)
       h_(setup.method.support_dx * p_.dx / kernel_.radius_factor()),
       table_(kernel_, h_),
       list_(setup.method.support_dx * p_.dx, setup.method.skin, {search_method(setup.method.neighbours)}) {
-  for (const auto& material : p_.materials) {
-    const auto* hypoelastic = dynamic_cast<const Hypoelastic<D>*>(material.get());
-    if (!hypoelastic)
-      throw InputError(
-          fmt::format("{} needs a material that gives stress rates; \"{}\" gives stresses of a deformation "
-                      "gradient. Valid: "
-                      "hypoelastic",
-                      setup.method.formulation, material->name()));
-    materials_.push_back(hypoelastic);
-  }
-  if (setup.method.velocity_gradient != "standard" && setup.method.velocity_gradient != "corrected")
-    throw InputError(fmt::format("unknown velocity_gradient \"{}\"; valid: standard, corrected",
-                                 setup.method.velocity_gradient));
+  for (const auto& material : p_.materials)  // of the kind that the traits ask for
+    materials_.push_back(&dynamic_cast<const Hypoelastic<D>&>(*material));
   const std::size_t n = p_.X.particles();  // there is room for more images
   rho_ = rho_rate_ = rho_material_ = rho_material_rate_ = Field(n, 1);
   s_ = s_rate_ = T_ = Field(n, S);

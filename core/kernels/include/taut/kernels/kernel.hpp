@@ -8,19 +8,11 @@
 
 namespace taut {
 
+struct KernelEntry;
+
 /// A radial kernel W(r, h) = constant() h^-D shape(r / h), normalised in D = `dimension` dimensions and
-/// exactly zero from r = radius_factor() h on. Names:
-///  - `lucy` (Lucy 1977), `cubic_spline` (Monaghan and Lattanzio 1985), `quadratic` (Johnson, Stryk and
-///  Beissel 1996),
-///    `wendland_c2` (Wendland 1995), `sinc5` (the fifth power of a sinc: Cabezon, Garcia-Senz and Relano
-///    2008);
-///  - `gaussian` (Gingold and Monaghan 1977), cut off at 3 h, where it still has 1.2e-4 of its centre value,
-///  and
-///    normalised on what is left;
-///  - `mollifier`, exp(-1 / (1 - q^2)), and `modified_mollifier`, the same times (1 - q^2)^8, which comes
-///  close to a
-///    Gaussian.
-/// Cheap to make and to copy: the constants are computed once for all.
+/// exactly zero from r = radius_factor() h on: one of `kernel_registry()` (registry.hpp). Cheap to make and
+/// to copy: the constants are computed once for all.
 class Kernel {
  public:
   /// \throws InputError for an unknown name, listing the valid ones, or a dimension that is not 1, 2 or 3.
@@ -41,7 +33,7 @@ class Kernel {
   static std::vector<std::string> names();
 
  private:
-  int shape_ = 0;
+  const KernelEntry* entry_ = nullptr;
   int dimension_ = 0;
   double constant_ = 0;
 };

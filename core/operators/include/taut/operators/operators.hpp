@@ -84,7 +84,8 @@ struct PairOperator {
   }
 };
 
-/// Builds the operator that `method` names in the reference configuration.
+/// Builds the operator that `method` names, one of `operator_registry()` (registry.hpp), in the reference
+/// configuration.
 /// `corrected`: M_a = [sum_b G_ab (x) X_ab]^-1, so that the gradient of X is I (Randles & Libersky 1996;
 /// Bonet & Lok 1999). The matrix is made from the pair vectors as they are kept, hence linear fields are
 /// exact in single precision as well. Neighbours weigh alike, whatever their volumes: those next to a face of

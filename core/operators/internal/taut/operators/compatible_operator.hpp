@@ -2,7 +2,7 @@
 /// \file
 /// The compatible operator: linear exactness, closure and energy conjugacy at once.
 
-#include <taut/operators/operators.hpp>
+#include <taut/operators/registry.hpp>
 
 namespace taut {
 
@@ -30,5 +30,11 @@ bool is_closed(const Particles<D>& particles, const PairList& pairs, const PairO
 template <int D>
 double make_compatible(const Particles<D>& particles, const PairList& pairs, int iterations,
                        PairOperator<D>& op);
+
+/// Makes `op` the corrected operator that closure begins with. False where it is all but closed and nothing
+/// is left to do; else its vectors are stored. \throws InputError as `is_closed`, and where they may not be
+/// stored.
+template <int D>
+bool start_closure(const OperatorSetup<D>& setup, PairOperator<D>& op);
 
 }  // namespace taut

@@ -9,8 +9,7 @@
 
 namespace taut {
 
-/// \throws InputError for numbers of a method that are none, or out of all reason, and for choices that it
-/// does not have; names that have a registry aside.
+/// \throws InputError for a precision that has no name; what tables and registries check aside.
 void check_values(const Method& method);
 
 /// \throws InputError for a cloud whose parts do not go together or are no numbers, and for one that lies so

@@ -1,14 +1,38 @@
 #pragma once
 /// \file
-/// Storing pair vectors that are not antisymmetric.
+/// What operators are put together from.
 
 #include <taut/base/parallel.hpp>
 #include <taut/neighbors/pair_list.hpp>
-#include <taut/operators/operators.hpp>
+#include <taut/operators/registry.hpp>
 #include <taut/particles/particles.hpp>
 #include <utility>
 
 namespace taut {
+
+/// An operator without vectors, in the precision that the method asks for. Particles weigh alike, or as
+/// `weight` says (one value each). Vectors that are not those of the kernel's gradient, whose payload is not
+/// `shareable`, must be stored. \throws InputError where the method wants them otherwise, and for graded
+/// clouds unless they are stored.
+template <int D>
+PairOperator<D> start_operator(const OperatorSetup<D>& setup, bool shareable = true, Field weight = {});
+
+/// Fills in the vectors w_a w_b grad W_ab, or what they are shared or recomputed from.
+template <int D>
+void fill_radial_vectors(const OperatorSetup<D>& setup, PairOperator<D>& op);
+
+/// Makes M and the sums of the vectors as they are kept: M_a = [sum_b G_ab (x) X_ab]^-1 where `corrected`, so
+/// that linear fields are exact, else I / V_a. \throws InputError for a particle whose matrix is singular.
+template <int D>
+void make_matrices(const OperatorSetup<D>& setup, bool corrected, PairOperator<D>& op);
+
+/// The start of most operators: radial vectors and the matrices that correct them.
+template <int D>
+PairOperator<D> make_corrected(const OperatorSetup<D>& setup);
+
+/// \throws InputError where vectors are to be shared or recomputed.
+void require_stored(const Method& method, PairPrecision precision);
+bool is_stored(PairPrecision precision);
 
 /// What `store_pair_vectors` does in one precision.
 template <int D, class Real, class F>
