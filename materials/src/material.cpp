@@ -11,6 +11,7 @@ namespace taut {
 template <int D>
 Material<D>::Material(const MaterialParameters& parameters) : parameters_(parameters) {
   const double E = parameters.E, nu = parameters.nu, density = parameters.density;
+  const Plane plane = parameters.plane;
   if (!(std::isfinite(E) && E > 0))
     throw InputError(fmt::format("E = {}: Young's modulus must be finite and greater than 0 Pa", E));
   if (!(nu > -1 && nu < 0.5))
