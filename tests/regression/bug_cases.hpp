@@ -2,8 +2,12 @@
 // Cases from public reports of people who use such codes, with truths: formulas, or quadratic finite
 // elements. Their names and numbers are those of the collection that they come from.
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -61,6 +65,11 @@ inline const std::vector<Named>& on_pairs() {
       {"compatible", total_lagrangian("compatible", "quadratic")},
       {"antisymmetric", total_lagrangian("antisymmetric", "quadratic")},
       {"bond", of_form("tl_bond_associated")}};
+  return methods;
+}
+inline std::vector<Named> on_clouds() {
+  std::vector<Named> methods = on_pairs();
+  methods.push_back({"auto", {}});
   return methods;
 }
 inline std::vector<Named> on_nodes() {
@@ -274,13 +283,32 @@ inline Cloud<2> cook_cloud(int n, bool areas) {
   c.dx = nearest[nearest.size() / 2];
   return c;
 }
+/// `auto` takes the cloud as a file brings it, and the support that it needs; other methods that of the
+/// report.
 inline Answer cook(Method m, int n, bool areas) {
-  m.support_dx = 2.6;
+  Cloud<2> cloud = cook_cloud(n, areas);
+  if (m.formulation == "auto") {
+    const auto file = std::filesystem::temp_directory_path() / fmt::format("taut_cook_{}_{}.csv", n, areas);
+    {
+      std::ofstream out(file);
+      out.precision(17);
+      out << (areas ? "x,y,volume,bx,by\n" : "x,y,volume\n");
+      for (std::size_t i = 0; i < cloud.size(); ++i) {
+        out << cloud.X[i].x() << ',' << cloud.X[i].y() << ',' << cloud.V[i];
+        if (areas) out << ',' << cloud.B[i].x() << ',' << cloud.B[i].y();
+        out << '\n';
+      }
+    }
+    cloud = read_cloud<2>(file);
+    std::filesystem::remove(file);
+  } else {
+    m.support_dx = 2.6;
+  }
   return answer(
       [&] {
         Simulation<2> s(
-            cook_cloud(n, areas),
-            law<2>(m, "linear_elastic", {.E = 1, .nu = 1.0 / 3, .density = 1, .plane = Plane::stress}), m);
+            cloud, law<2>(m, "linear_elastic", {.E = 1, .nu = 1.0 / 3, .density = 1, .plane = Plane::stress}),
+            m);
         s.clamp(s.face("x_min"));
         s.load(s.face("x_max"), {0, 1});
         return s;

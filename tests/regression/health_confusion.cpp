@@ -61,7 +61,7 @@ void table(const std::function<void(const Line&)>& see) {
         [&](const Method& m) { return series(m, dx * 1e-3); });
   for (const bool areas : {true, false})
     for (const int n : all ? std::vector{8, 16, 32} : std::vector{8})
-      add(fmt::format("28 Cook, {} cells, areas {}", n, areas ? "given" : "guessed"), on_pairs(),
+      add(fmt::format("28 Cook, {} cells, areas {}", n, areas ? "given" : "guessed"), on_clouds(),
           [&](const Method& m) { return cook(m, n, areas); });
   add("37 centroids, 9 x 4", on_pairs(), [](const Method& m) { return centroids<2>(m, {9, 4}); });
   if (all)

@@ -39,7 +39,9 @@ class TlDisplacement final : public TotalLagrangian<D> {
     // In 1D odd and even particles move by themselves, a part of dx out of step behind an interface, to no
     // harm.
     if (D == 1) return told_only;
-    return control_ ? 0.15 : taut::rough_limit(this->method_.operators);
+    // Curvature parts a pair from its gradient in proportion to its length.
+    const double wide = this->method_.support_dx / 1.5;
+    return wide * wide * (control_ ? 0.15 : taut::rough_limit(this->method_.operators));
   }
   std::size_t bytes() const override { return Base::bytes() + (control_ ? control_->bytes() : 0); }
 

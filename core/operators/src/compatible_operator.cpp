@@ -100,7 +100,7 @@ OperatorEntry compatible_entry() {
   return {.name = "compatible",
           .line = "linear exactness, closure and energy conjugacy at once: accurate on irregular clouds too",
           .make = {make<1>, make<2>, make<3>},
-          .traits = {.areas = true, .adjoint = true},
+          .traits = {.areas = true, .adjoint = true, .rough_limit = 0.35},
           .parameters = {closure_iterations()}};
 }
 
