@@ -20,13 +20,13 @@ class PrescribedMotion {
   using OfAll = std::function<double(double t)>;
 
   PrescribedMotion() = default;
-  /// Where no velocity is given it is a difference of the displacement.
+  /// From the displacement; where no velocity is given it is a difference of it.
   template <std::invocable<const Vec<D>&, double> F>
-  PrescribedMotion(F displacement, OfPoint velocity = {})
-      : of_point_(std::move(displacement)), velocity_of_point_(std::move(velocity)) {}
+  PrescribedMotion(F of_point, OfPoint its_velocity = {})
+      : of_point_(std::move(of_point)), velocity_of_point_(std::move(its_velocity)) {}
   template <std::invocable<double> F>
-  PrescribedMotion(F displacement, OfAll velocity = {})
-      : of_all_(std::move(displacement)), velocity_of_all_(std::move(velocity)) {}
+  PrescribedMotion(F of_all, OfAll its_velocity = {})
+      : of_all_(std::move(of_all)), velocity_of_all_(std::move(its_velocity)) {}
 
   bool moves() const { return of_point_ || of_all_; }
   /// The same for positions that are counted from `origin`.
