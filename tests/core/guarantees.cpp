@@ -542,6 +542,17 @@ TEST_CASE("F20: files that cannot be read") {
   }
 }
 
+TEST_CASE("F15: a body that is torn to pieces in its only step is no result") {
+  auto s = simulation({.formulation = "tl_displacement"});
+  s.set_velocity([](const Vec<2>& X) { return Vec<2>(1e6 * X[0], 0); });
+  const auto torn = s.run(1e-3);
+  CHECK(torn.steps < 32);
+  CHECK(torn.status == Status::broke);
+  auto flying = simulation({.formulation = "tl_displacement"});
+  flying.set_velocity([](const Vec<2>&) { return Vec<2>(1e6, 0); });
+  CHECK(flying.run(1e-3).status == Status::ok);
+}
+
 TEST_CASE("F6: materials whose wave speed is no number") {
   class Odd final : public Hyperelastic<2> {
    public:
