@@ -115,7 +115,19 @@ std::string shortened(std::string_view text, std::size_t most) {
 
 void print_out(std::string_view text) { print(STDOUT_FILENO, visible(text)); }
 
-void print_error(std::string_view text) { print(STDERR_FILENO, cut(visible(text), 6000)); }
+void print_error(std::string_view text) {
+  // What was given may be of any length: no word of it stands there in full beyond a long path.
+  constexpr std::size_t longest_word = 400;
+  const std::string shown = visible(text);
+  std::string message;
+  for (std::size_t at = 0; at < shown.size() && message.size() <= 20000;) {
+    const std::size_t end = std::min(shown.find_first_of(" \n", at), shown.size());
+    message += cut(shown.substr(at, end - at), longest_word);
+    if (end < shown.size()) message += shown[end];
+    at = end + 1;
+  }
+  print(STDERR_FILENO, cut(std::move(message), 6000));
+}
 
 void erase_line() {
   if (isatty(STDOUT_FILENO) == 1) print(STDOUT_FILENO, "\r\033[K");

@@ -57,8 +57,8 @@ double View::brightness(const Point& normal) const {
 std::vector<Point> outward(const std::vector<Point>& x, double spacing) {
   std::vector<Point> normals(x.size());
   if (x.empty() || !(spacing > 0)) return normals;
-  const double reach = 2 * spacing;
-  constexpr std::size_t most = 64;  // in a cell: eight where nothing clumps
+  const double reach = 2.1 * spacing;  // on a lattice, no place lies on its edge
+  constexpr std::size_t most = 64;     // in a cell: eight where nothing clumps
   std::unordered_map<std::uint64_t, std::vector<std::size_t>> cells;
   for (std::size_t i = 0; i < x.size(); ++i) {
     const auto c = cell_of(x[i], x[0], reach);

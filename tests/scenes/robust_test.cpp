@@ -250,6 +250,16 @@ TEST_CASE("F20: equal runs write equal files, byte by byte") {
   CHECK(files == 1);
 }
 
+TEST_CASE("F20: long arguments are not repeated in full") {
+  const Folder folder("long");
+  const std::string name(5000, 'a');
+  for (const std::string& arguments : {name, "--" + name, "x.toml --tolerance " + name}) {
+    const Outcome outcome = folder.compare(arguments);
+    CHECK(outcome.status == 2);
+    CHECK(outcome.err.size() < 1000);
+  }
+}
+
 TEST_CASE("F20: a scene whose name begins as an option does") {
   const Folder folder("dash");
   CHECK(folder.compare("-x.toml").err.find("give ./-x.toml") != std::string::npos);
