@@ -7,6 +7,7 @@
 
 int main(int argc, char** argv) {
   using namespace taut::bench;
+  sleep_while_waiting(argv);
   CLI::App app{
       "Runs scenes under each method they list, compares with the truth they name, and writes results.csv,\n"
       "report.html, charts, pictures and fields (.vtkhdf) to a folder. Scene files: bench/scenes/README.md."};

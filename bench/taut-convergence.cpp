@@ -5,6 +5,7 @@
 
 int main(int argc, char** argv) {
   using namespace taut::bench;
+  sleep_while_waiting(argv);
   CLI::App app{
       "Refines bodies with known answers under every formulation, operator and support that can run them, "
       "prints errors and orders, and\n"

@@ -216,7 +216,6 @@ class CantileverStudy {
     for (const double c : controls_) table.header.push_back(c == 0 ? "off" : fmt::format("{:g}", c));
     table.header.push_back("spread");
     table.header.push_back("bonds");
-    int colour = 0;
     std::size_t line = 0;
     for (const bool jittered : {false, true})
       for (Job job : variants_) {
@@ -224,7 +223,7 @@ class CantileverStudy {
         job.dx = spacings_[level];
         const std::string label = label_of(job);
         std::vector<HtmlCell> cells = {{label, ""}};
-        Series series{label, Series::Style::run, colour++, {}, {}, {}, true};
+        Series series{label, Series::Style::run, colour_of(label), {}, {}, {}, true};
         double least = 1e300, most = 0;
         for (const double c : controls_) {
           job.method.zero_energy_control = c;

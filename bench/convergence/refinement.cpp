@@ -86,11 +86,10 @@ Chart error_chart(const Refinement& r, const std::vector<double>& x, Chart chart
   chart.log_x = chart.log_y = true;
   chart.x_ticks = x;
   double coarsest = 0;
-  int colour = 0;
   for (const RefinementLine& line : r.lines) {
     Series s{line.label,
              line.yardstick ? Series::Style::truth : Series::Style::run,
-             line.yardstick ? 0 : colour++,
+             line.yardstick ? 0 : colour_of(line.label),
              {},
              {},
              {},

@@ -193,17 +193,35 @@ template <int D>
 BodySize body_size_of(const ShapeSpec& geometry) {
   const Shape<D> shape = at_place(geometry.place, "geometry", [&] { return make_shape<D>(geometry); });
   const Vec<D> size = shape.max() - shape.min();
-  BodySize body{{size.data(), size.data() + D}, 1};
+  BodySize body{
+      {shape.min().data(), shape.min().data() + D}, {size.data(), size.data() + D}, 1, size.minCoeff()};
   if (geometry.type == "box") return body;
   constexpr int samples = D == 3 ? 24 : D == 2 ? 100 : 1000;
-  int inside = 0, all = 1;
+  int all = 1;
   for (int d = 0; d < D; ++d) all *= samples;
+  std::vector<char> inside(static_cast<std::size_t>(all));
   for (int i = 0; i < all; ++i) {
     Vec<D> X = shape.min();
     for (int d = 0, rest = i; d < D; ++d, rest /= samples) X[d] += (rest % samples + 0.5) / samples * size[d];
-    inside += shape.contains(X);
+    inside[static_cast<std::size_t>(i)] = shape.contains(X);
   }
-  body.fraction = static_cast<double>(inside) / all;
+  body.fraction = static_cast<double>(std::count(inside.begin(), inside.end(), 1)) / all;
+  for (int d = 0, stride = 1; d < D; ++d, stride *= samples) {
+    double chords = 0, shares = 0;  // the sum of 1/length over the chords, and of the samples in them
+    for (int i = 0; i < all; ++i) {
+      if (i / stride % samples != 0) continue;
+      int length = 0;
+      for (int k = 0; k <= samples; ++k)
+        if (k < samples && inside[static_cast<std::size_t>(i + k * stride)]) {
+          ++length;
+        } else if (length > 0) {
+          chords += 1;
+          shares += 1.0 / length;
+          length = 0;
+        }
+    }
+    if (shares > 0) body.thickness = std::min(body.thickness, chords / shares / samples * size[d]);
+  }
   return body;
 }
 

@@ -30,8 +30,9 @@ double shortest_edge(const Scene& scene);
 
 /// The bounding box of a scene's shape, and how much of it is body (by sampling). Not for clouds from files.
 struct BodySize {
-  std::vector<double> edges;  ///< [m]
+  std::vector<double> min, edges;  ///< [m]
   double fraction = 1;
+  double thickness = 0;  ///< harmonic mean of its chords along the axis where they are shortest [m]
 };
 BodySize body_size(const Scene& scene);
 

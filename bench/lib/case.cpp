@@ -79,6 +79,7 @@ double field_value(const Mat<3>& sigma, const std::string& field) {
 template <int D>
 Snapshot snapshot(const Simulation<D>& simulation) {
   Snapshot shot;
+  shot.spacing = simulation.dx();
   for (std::size_t i = 0; i < simulation.size(); ++i) {
     std::array<double, 3> x{};
     for (int d = 0; d < D; ++d) x[static_cast<std::size_t>(d)] = simulation.position(i)[d];

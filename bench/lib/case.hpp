@@ -27,6 +27,7 @@ struct Measured {
 
 /// The deformed body, for pictures.
 struct Snapshot {
+  double spacing = 0;                                 ///< of the particles, undeformed [m]
   std::vector<std::array<double, 3>> x;               ///< current positions [m]
   std::map<std::string, std::vector<double>> fields;  ///< by names of `picture_fields()` [Pa]
 };

@@ -25,6 +25,7 @@ struct Series {
   bool marks = true;
   int mark = -1;          ///< index of a mark; −1: that of the colour
   bool in_legend = true;  ///< where it has a label
+  bool wild = false;      ///< of a run that broke: does not stretch the axes far beyond what others need
 };
 
 /// Text right of a place in a chart.
@@ -45,6 +46,10 @@ struct Chart {
 
   bool empty() const;
 };
+
+/// Index of a label: the same whenever it is asked for, so that what is called alike has one colour in every
+/// chart, table and picture. Indices are given away in the order of the first questions.
+int colour_of(const std::string& label);
 
 /// Colour of a run, "#rrggbb": Okabe and Ito's set, told apart by colour-blind readers too. Black below 0.
 std::string run_colour(int index);

@@ -8,35 +8,59 @@
 #include <fstream>
 #include <lib/build.hpp>
 #include <lib/case.hpp>
+#include <lib/csv_table.hpp>
 #include <lib/estimate.hpp>
 #include <lib/names.hpp>
+#include <lib/slowest_mode.hpp>
 #include <limits>
 
 namespace taut::bench {
 namespace {
 
-/// Measured on bodies of 64000 to 160801 particles: largest resident size of a whole job over particles, of
-/// lattices and jittered ones (R = 1.5 dx, and 2.4 dx for the part of the pairs), set-up seconds a particle
-/// on one busy thread; and nanoseconds a particle-step and thread from bench/PERFORMANCE.md.
+/// Measured on bodies of 39304 to 160801 particles: largest resident size of a whole job over particles, of
+/// lattices and jittered ones (R = 1.5 dx, and 2.4 dx for the part of the pairs), processor seconds of a job
+/// without its steps; and nanoseconds a particle-step and thread, from bench/PERFORMANCE.md and, for rates,
+/// from small bodies.
 struct Cost {
   double bytes, bytes_a_pair;      // memory of a particle: bytes + bytes_a_pair · pairs
   double step_ns, step_ns_a_pair;  // a step of a particle likewise
   double setup_us;
 };
 
-Cost cost_of(const Method& method, int dimension, bool regular) {
+/// The program itself, its libraries included.
+constexpr double program_bytes = 15e6;
+
+Cost cost_of(const Method& method, int dimension, bool regular, bool plain_box) {
   const bool solid = dimension == 3;
   if (!has_pairs(method.formulation))
-    return {solid ? 500.0 : 370.0, 0, solid ? 40.0 : 20.0, 0, solid ? 12.0 : 5.0};
-  if (method.formulation.starts_with("ul_")) return {solid ? 330.0 : 320.0, 6, 45, 2.5, 3};
+    return {solid ? 500.0 : 370.0, 0, solid ? 40.0 : 20.0, 0, solid ? 3.0 : 2.0};
+  if (method.formulation.starts_with("ul_"))
+    return {solid ? 330.0 : 320.0, 6, method.formulation == "ul_basic" ? 60.0 : 150.0, 3.5,
+            solid ? 4.0 : 2.0};
   const double base = solid ? 600 : 370;
-  if (method.formulation != "tl_displacement")
-    return {base, 33, 60, 8, 95};  // pairs with a stress of their own
-  if (method.operators == "compatible") return {base, 62, 20, 4, 55};
-  if (method.operators == "antisymmetric") return {base, 46, 20, 2.75, 70};
-  if (regular) return {solid ? 540.0 : 360.0, 0, 7, 0.83, 15};
-  return {base, 18, 20, 2.75, 34};
+  if (method.formulation != "tl_displacement")  // pairs with a stress of their own
+    return {base, regular ? 0.0 : 33.0, 60, 8, solid ? 18.0 : 8.0};
+  const bool compatible = method.operators == "compatible";
+  if (regular && (plain_box || !compatible)) return {solid ? 540.0 : 360.0, 0, 7, 0.83, solid ? 8.0 : 3.0};
+  if (compatible) return {base, 62, 20, 4, solid ? 19.0 : 8.0};
+  if (method.operators == "antisymmetric") return {base, 46, 20, 2.75, solid ? 22.0 : 9.0};
+  return {base, 18, 20, 2.75, solid ? 11.0 : 5.5};
 }
+
+/// The stable step over dx / c: what stiffness a method sees depends on its operators and its support.
+double step_factor(const Method& method, int dimension, bool jittered) {
+  double factor = jittered ? 0.92 : 1;
+  if (!has_pairs(method.formulation)) return factor;
+  if (method.viscosity > 0) factor *= 0.62;
+  if (method.operators == "standard") return 2.2 * factor;
+  if (method.operators == "corrected" && jittered) factor *= 0.7;
+  if (dimension == 1) return 1.4 * factor;
+  if (method.support_dx > 2) return 1.2 * factor;
+  return (dimension == 3 ? 0.8 : 1.0) * factor;
+}
+
+/// Periods of the slowest motion until it has died, near-critically damped.
+double relaxation_periods(double tolerance) { return std::max(2.1, 0.41 * -std::log10(tolerance)); }
 
 /// Lattice places within a sphere of radius R, in spacings.
 double neighbours(double radius, int dimension) {
@@ -63,10 +87,52 @@ double lines_of(const std::string& file) {
   return lines;
 }
 
+/// Bounding box of a cloud from a file, and its spacing [m]: that of as many points in the box, or in its
+/// volumes where it brings them. 0 where the file cannot be read; said with its place when it is.
+double measure_cloud(const Scene& scene, double particles, BodySize& body) {
+  constexpr double most = 3e6;  // some seconds
+  if (!(particles > 0 && particles < most)) return 0;
+  try {
+    const CsvTable table(scene.geometry.file);
+    double volume = 1;
+    for (int d = 0; d < scene.dimension; ++d) {
+      const std::size_t column = table.column(std::string(1, static_cast<char>('x' + d)));
+      double low = std::numeric_limits<double>::max(), high = -low;
+      for (std::size_t i = 0; i < table.rows(); ++i)
+        if (const auto value = table.at(i, column).value) {
+          low = std::min(low, *value);
+          high = std::max(high, *value);
+        }
+      if (!(high > low)) return 0;
+      body.min.push_back(low);
+      body.edges.push_back(high - low);
+      volume *= high - low;
+    }
+    body.thickness = *std::min_element(body.edges.begin(), body.edges.end());
+    try {
+      const std::size_t column = table.column("volume");
+      double sum = 0;
+      for (std::size_t i = 0; i < table.rows(); ++i) sum += table.at(i, column).value.value_or(0);
+      if (sum > 0) volume = sum;
+    } catch (const InputError&) {  // has none
+    }
+    return std::pow(volume / static_cast<double>(table.rows()), 1.0 / scene.dimension);
+  } catch (const InputError&) {
+    return 0;
+  }
+}
+
 double first_number(const char* file) {
   std::ifstream in(file);
   double value = 0;
   return in >> value && value > 0 ? value : std::numeric_limits<double>::infinity();
+}
+
+/// 11000 of 10879: no more than an estimate can tell.
+std::string two_digits(double count) {
+  if (count >= 1e6 || count < 10) return fmt::format("{:.2g}", count);
+  const double unit = std::pow(10, std::floor(std::log10(count)) - 1);
+  return fmt::format("{:.0f}", std::round(count / unit) * unit);
 }
 
 std::string size_text(double bytes) {
@@ -85,17 +151,17 @@ std::string duration_text(double seconds) {
 Estimate estimate(const Scene& scene, const RunSpec& run, const SweepPoint& point, int threads) {
   const LatticeSpec lattice = lattice_of(run, point);
   Estimate e;
-  double dx = lattice.dx, longest = 0;
   double places = 1;  // of the bounding box, which all are asked for
   const bool cloud = scene.geometry.type == "csv";
+  BodySize body;
+  double dx = lattice.dx;
   if (cloud) {
     e.particles = places = lines_of(scene.geometry.file);
+    dx = measure_cloud(scene, e.particles, body);
   } else {
-    const BodySize body = body_size(scene);
-    for (const double edge : body.edges) {
+    body = body_size(scene);
+    for (const double edge : body.edges)
       places *= std::max(std::round(edge / dx), 1.0) + (lattice.kind == Lattice::node_centred);
-      longest = std::max(longest, edge);
-    }
     e.particles = std::max(1.0, places * body.fraction);
   }
   const bool updated = run.method.formulation.starts_with("ul_");
@@ -103,15 +169,23 @@ Estimate estimate(const Scene& scene, const RunSpec& run, const SweepPoint& poin
   const double each =
       has_pairs(run.method.formulation) ? neighbours(run.method.support_dx * skin, scene.dimension) : 0;
   e.pairs = e.particles * each;
-  const Cost cost = cost_of(run.method, scene.dimension, !cloud && lattice.jitter == 0);
-  e.bytes = e.particles * (cost.bytes + cost.bytes_a_pair * each) + 2 * places;
+  const bool jittered = cloud || lattice.jitter > 0;
+  const bool plain_box = scene.geometry.type == "box" && lattice.kind == Lattice::node_centred;
+  const Cost cost = cost_of(run.method, scene.dimension, !jittered, plain_box);
+  e.bytes = program_bytes + e.particles * (cost.bytes + cost.bytes_a_pair * each) + 2 * places;
 
-  const double speed = wave_speed_of(scene, material_of(scene, run, point));
-  double step = cloud ? 0 : run.solve.cfl * (lattice.jitter > 0 ? 0.8 : 1) * dx / speed;
+  double speed = wave_speed_of(scene, material_of(scene, run, point));
+  for (const RegionSpec& region : scene.regions)
+    speed = std::max(speed, wave_speed_of(scene, material_of(scene, region, run, point)));
+  double step = run.solve.cfl * step_factor(run.method, scene.dimension, jittered) * dx / speed;
   if (run.solve.mode == "relax") {
-    // Damped to rest in some two periods of a bar that is held at one end.
-    e.steps = step > 0 ? 2.2 * 4 * longest / speed / step : 0;
-    e.steps = std::min(e.steps, static_cast<double>(run.solve.max_steps));
+    if (step > 0) {
+      const double period = slowest_period(scene, run, point, body);
+      e.steps =
+          (run.solve.free_time + run.solve.ramp_time + relaxation_periods(run.solve.tolerance) * period) /
+          step;
+      e.steps = std::min(e.steps, static_cast<double>(run.solve.max_steps));
+    }
   } else {
     if (run.solve.max_step > 0) step = step > 0 ? std::min(step, run.solve.max_step) : run.solve.max_step;
     e.steps = step > 0 ? run.solve.duration / step : 0;
@@ -139,8 +213,13 @@ void check_size(const Scene& scene, const RunSpec& run, const SweepPoint& point,
                                          size_text(e.bytes), size_text(limit));
     if (scene.geometry.type == "csv") fail(scene.geometry.place, "[geometry] file: " + what);
     const LatticeSpec lattice = lattice_of(run, point);
-    fail(lattice.place, fmt::format("[lattice] dx: {:g}: {}; dx = {:.2g} would fit", lattice.dx, what,
-                                    lattice.dx * std::pow(e.bytes / limit, 1.0 / scene.dimension)));
+    const double room = limit - program_bytes;
+    const std::string advice =
+        room > 0 ? fmt::format(
+                       "dx = {:.2g} would fit",
+                       1.02 * lattice.dx * std::pow((e.bytes - program_bytes) / room, 1.0 / scene.dimension))
+                 : "nothing would fit";
+    fail(lattice.place, fmt::format("[lattice] dx: {:g}: {}; {}", lattice.dx, what, advice));
   }
   constexpr double most_steps = 1e12;
   if (run.solve.mode == "dynamic" && !(e.steps <= most_steps))
@@ -150,23 +229,24 @@ void check_size(const Scene& scene, const RunSpec& run, const SweepPoint& point,
 }
 
 TextTable dry_run(const Scene& scene, int threads, double limit) {
-  TextTable table{scene.name,
-                  fmt::format("Estimated for {} thread{} and {} of memory. Steps of runs to rest: those of "
-                              "stretching; bending takes several times as many.",
-                              threads, threads == 1 ? "" : "s", size_text(limit)),
-                  {"run", "case", "particles", "pairs", "memory", "steps", "time"},
-                  {}};
+  TextTable table{
+      scene.name,
+      fmt::format("Estimated for {} thread{} and {} of memory. Steps are good to a factor of three, "
+                  "memory to two; seconds suppose a machine that does nothing else.",
+                  threads, threads == 1 ? "" : "s", size_text(limit)),
+      {"run", "case", "particles", "pairs", "memory", "steps", "time"},
+      {}};
   for (const RunSpec& run : scene.runs)
     for (const SweepPoint& point : scene.points()) {
       if (!wanted(run, point)) continue;
       const Estimate e = estimate(scene, run, point, threads);
-      const std::string steps = e.steps > 0 ? fmt::format("{:.2g}", e.steps) : "–";
+      const std::string steps = e.steps > 0 ? two_digits(e.steps) : "–";
       table.rows.push_back({{run.label, ""},
                             {describe(point), ""},
                             {fmt::format("{:.3g}", e.particles), "number"},
                             {e.pairs > 0 ? fmt::format("{:.3g}", e.pairs) : "–", "number"},
                             {size_text(e.bytes) + (e.bytes <= limit ? "" : " (too much)"), "number"},
-                            {run.solve.mode == "relax" && e.steps > 0 ? "≥ " + steps : steps, "number"},
+                            {steps, "number"},
                             {e.steps > 0 ? duration_text(e.seconds) : "–", "number"}});
     }
   return table;

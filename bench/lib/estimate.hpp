@@ -10,8 +10,8 @@
 
 namespace taut::bench {
 
-/// Rough figures, from counting and a table of measured ones (estimate.cpp): memory within some 30 %; steps
-/// of runs to rest are those of stretching, and bending bodies take several times as many.
+/// Rough figures, from counting and a table of measured ones (estimate.cpp): memory within a factor of two,
+/// steps of three (bench/README.md has a table). A run that breaks ends before.
 struct Estimate {
   double particles = 0, pairs = 0;
   double bytes = 0;  ///< at the most at one time, cloud and set-up included

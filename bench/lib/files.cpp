@@ -39,6 +39,7 @@ std::string read_file(const std::filesystem::path& file, std::size_t limit) {
     if (text.size() > limit)
       throw RunError(fmt::format("{}: is larger than {} bytes, the most that is read", file.string(), limit));
   }
+  if (in.bad()) throw RunError(file.string() + ": cannot read all of it");
   return text;
 }
 

@@ -55,7 +55,7 @@ void write_health(HtmlPage& page, const SceneReport& part) {
   for (const HealthMeasure& m : columns) header.push_back(title_of(m.name));
   std::vector<std::vector<HtmlCell>> rows;
   for (const auto& [run, measures] : runs) {
-    std::vector<HtmlCell> row = {{run->label, run_colour(static_cast<int>(run - part.scene->runs.data()))}};
+    std::vector<HtmlCell> row = {{run->label, run_colour(colour_of(run->label))}};
     for (const HealthMeasure& column : columns) {
       const auto found = std::find_if(measures.begin(), measures.end(),
                                       [&](const HealthMeasure& m) { return m.name == column.name; });

@@ -121,6 +121,14 @@ int exit_code(CLI::App& app, const std::string& name, int argc, char** argv,
 
 }  // namespace
 
+void sleep_while_waiting(char** argv) {
+  for (const char* name : {"OMP_WAIT_POLICY", "GOMP_SPINCOUNT", "KMP_BLOCKTIME"})
+    if (std::getenv(name)) return;
+  // Of GCC's library: some microseconds, so that a quiet machine loses nothing. Of LLVM's: milliseconds.
+  if (setenv("GOMP_SPINCOUNT", "1000", 1) == 0 && setenv("KMP_BLOCKTIME", "0", 1) == 0)
+    execv("/proc/self/exe", argv);
+}
+
 int run_executable(CLI::App& app, const std::string& name, int argc, char** argv,
                    const std::function<void(const CommonOptions&)>& body) {
   open_standard_streams();

@@ -14,7 +14,8 @@ bool shows(const PictureSpec& picture, const RunSpec& run);
 /// Indices into `points`.
 std::size_t nearest_point(const std::vector<SweepPoint>& points, const SweepPoint& wanted);
 
-/// One panel a case, all at the same scale and with the same colours, the undeformed outline dashed: a PNG.
+/// One panel a case (24 at the most), all at the same scale and with the same colours, the undeformed outline
+/// dashed: a PNG. Bodies of three dimensions are seen as `PictureSpec::from` says, lit from above.
 /// False without gnuplot.
 bool write_picture(const PictureSpec& picture, const std::vector<const CaseResult*>& cases,
                    const std::filesystem::path& image, std::string& why);

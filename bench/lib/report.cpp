@@ -103,7 +103,7 @@ void write_runs(HtmlPage& page, const SceneReport& part) {
     const std::string lattice =
         part.scene->geometry.type == "csv" ? "from file" : name_of(group.run->lattice.kind);
     rows.push_back(
-        {{group.run->label, run_colour(static_cast<int>(group.run - part.scene->runs.data()))},
+        {{group.run->label, run_colour(colour_of(group.run->label))},
          {s.broke     ? fmt::format("{} of {} broke", s.broke, total)
           : s.suspect ? fmt::format("{} of {} suspect", s.suspect, total)
                       : fmt::format("all {} finished", total),
@@ -149,7 +149,7 @@ void write_broken(HtmlPage& page, const SceneReport& part) {
   std::vector<Cells> rows;
   for (const CaseResult& c : part.cases)
     if (c.broke)
-      rows.push_back({{c.run->label, run_colour(static_cast<int>(c.run - part.scene->runs.data()))},
+      rows.push_back({{c.run->label, run_colour(colour_of(c.run->label))},
                       {describe(c.point), ""},
                       {fmt::format("{:.4g} s", c.broke_time), "number bad"},
                       {fmt::format("{}", c.steps), "number"},
@@ -250,7 +250,10 @@ void write_pictures(HtmlPage& page, const SceneReport& part, const std::filesyst
       page.figure(out / "pictures" / name,
                   picture.title +
                       ". Particles at their deformed places, coloured by stress; dashed: the "
-                      "undeformed outline. A run that broke is shown in its last good state.");
+                      "undeformed outline. A run that broke is shown in its last good state." +
+                      (part.scene->dimension == 3
+                           ? " Faces seen at a slant are darker where light falls on them less."
+                           : ""));
     else {
       missing.push_back("pictures/" + name + ": " + why);
       page.paragraph(fmt::format("{}: no picture ({}).", picture.title, why), "quiet");
@@ -307,6 +310,8 @@ void write_page(const Report& report, const std::filesystem::path& out, bool fig
   std::size_t total = 0, broke = 0;
   for (const SceneReport& part : report.scenes)
     for (const CaseResult& c : part.cases) ++total, broke += c.broke;
+  for (const SceneReport& part : report.scenes)
+    for (const RunSpec& run : part.scene->runs) colour_of(run.label);  // in their order
   page.paragraph(
       fmt::format("{} {}: {} cases, {} finished and {} broke, in {:.0f} s on {} thread{}{}.",
                   report.executable, TAUT_VERSION, total, total - broke, broke, std::ceil(report.wall_s),

@@ -150,8 +150,9 @@ struct RunSpec {
 struct PictureSpec {
   std::string title;
   std::string field = "von_mises";
-  SweepPoint of;                  ///< which case of each run
-  std::vector<std::string> runs;  ///< labels; empty: all
+  std::array<double, 3> from{0, 0, 1};  ///< direction in which the viewer stands
+  SweepPoint of;                        ///< which case of each run
+  std::vector<std::string> runs;        ///< labels; empty: all
   Place place;
 };
 

@@ -56,8 +56,6 @@ std::vector<SweepPoint> others(const Scene& scene, const std::vector<std::string
   return points;
 }
 
-int colour_of(const Scene& scene, const RunSpec& run) { return static_cast<int>(&run - scene.runs.data()); }
-
 Cases select(const std::vector<CaseResult>& cases, const RunSpec& run, const SweepPoint& part) {
   Cases found;
   for (const CaseResult& c : cases)
@@ -109,7 +107,7 @@ void add_load_charts(const Scene& scene, const std::vector<CaseResult>& cases, c
               {}};
   Series truth{probe.reference ? probe.reference->label : "", Series::Style::truth, 0, {}, {}, {}, true};
   for (const RunSpec& run : scene.runs) {
-    Series values{run.label, Series::Style::run, colour_of(scene, run), {}, {}, {}, true}, errors = values;
+    Series values{run.label, Series::Style::run, colour_of(run.label), {}, {}, {}, true}, errors = values;
     Cases along = finest(select(cases, run, part));
     std::stable_sort(along.begin(), along.end(), [](const CaseResult* a, const CaseResult* b) {
       return a->point.at("load") < b->point.at("load");
@@ -131,10 +129,9 @@ void add_load_charts(const Scene& scene, const std::vector<CaseResult>& cases, c
     error.series.push_back(std::move(errors));
   }
   for (const PrintedSpec& printed : probe.printed) {
-    Series marks{printed.label, Series::Style::printed, 0, {}, {}, {}, true}, errors = marks;
-    for (std::size_t i = 0; i < scene.runs.size(); ++i)
-      if (!printed.runs.empty() && printed.runs[0] == scene.runs[i].label)
-        marks.colour = errors.colour = static_cast<int>(i);
+    // Black where it belongs to no one run.
+    Series marks{printed.label, Series::Style::printed, -1, {}, {}, {}, true}, errors = marks;
+    if (!printed.runs.empty()) marks.colour = errors.colour = colour_of(printed.runs[0]);
     for (std::size_t i = 0; i < truth.x.size(); ++i) {
       SweepPoint point = part;
       point["load"] = truth.x[i];
@@ -182,7 +179,7 @@ void add_spacing_chart(const Scene& scene, const std::vector<CaseResult>& cases,
               {}};
   double x_max = 0, y_max = 0, x_min = 1e300;
   for (const RunSpec& run : scene.runs) {
-    Series s{run.label, Series::Style::run, colour_of(scene, run), {}, {}, {}, true};
+    Series s{run.label, Series::Style::run, colour_of(run.label), {}, {}, {}, true};
     Cases along = select(cases, run, part);
     std::stable_sort(along.begin(), along.end(),
                      [](const CaseResult* a, const CaseResult* b) { return a->dx < b->dx; });
@@ -218,13 +215,16 @@ void add_cost_chart(const Scene& scene, const std::vector<CaseResult>& cases, st
               "Error against loop time",
               "Each mark is one run at one spacing: root mean square of its relative errors over the cases "
               "it finished, against the "
-              "mean wall time of their time loops. Down and left is better.",
+              "mean wall time of their time loops. Down and left is better. Crosses along the lower edge: "
+              "broke in every "
+              "case, after that long.",
               "loop time a case [s]",
               "error, rms [%]",
               true,
               true,
               false,
               {}};
+  bool any_error = false;
   for (const RunSpec& run : scene.runs) {
     std::set<double, std::greater<>> spacings;
     std::size_t total = 0, broke = 0;
@@ -236,7 +236,7 @@ void add_cost_chart(const Scene& scene, const std::vector<CaseResult>& cases, st
       }
     Series s{broke ? fmt::format("{} (broke in {} of {})", run.label, broke, total) : run.label,
              Series::Style::run,
-             colour_of(scene, run),
+             colour_of(run.label),
              {},
              {},
              {},
@@ -246,14 +246,18 @@ void add_cost_chart(const Scene& scene, const std::vector<CaseResult>& cases, st
       double loop = 0;
       for (const CaseResult& c : cases)
         if (c.run == &run && c.dx == dx && !c.broke) same.push_back(&c), loop += c.loop_s;
+      if (same.empty())  // never came to an end: how long it tried
+        for (const CaseResult& c : cases)
+          if (c.run == &run && c.dx == dx && c.loop_s > 0) s.broke_x.push_back(c.loop_s);
       const auto error = rms_error(same);
       if (!error || *error == 0 || loop == 0) continue;
       s.x.push_back(loop / static_cast<double>(same.size()));
       s.y.push_back(*error * 100);
     }
-    if (!s.x.empty()) chart.series.push_back(std::move(s));
+    any_error = any_error || !s.x.empty();
+    if (!s.x.empty() || !s.broke_x.empty()) chart.series.push_back(std::move(s));
   }
-  if (!chart.empty()) charts.push_back(std::move(chart));
+  if (any_error) charts.push_back(std::move(chart));
 }
 
 /// What a probe samples, and where: "Cauchy stress xx at (60, 25) mm".
@@ -280,17 +284,23 @@ void add_history_chart(const Scene& scene, const std::vector<CaseResult>& cases,
     if (c.point == point)
       if (const Measured* m = measured(c, probe); m && !m->history.t.empty()) along.push_back(&c);
   if (along.empty()) return;
+  const bool only_broken =
+      std::all_of(along.begin(), along.end(), [](const CaseResult* c) { return c->broke; });
   double size = 0, duration = 0;
   for (const CaseResult* c : along)
     for (std::size_t i = 0; i < measured(*c, probe)->history.t.size(); ++i) {
       const double v = std::abs(measured(*c, probe)->history.value[i]);
-      if (std::isfinite(v)) size = std::max(size, v);
+      if (std::isfinite(v) && (!c->broke || only_broken)) size = std::max(size, v);
       duration = std::max(duration, measured(*c, probe)->history.t[i]);
     }
+  const bool any_broke =
+      std::any_of(along.begin(), along.end(), [](const CaseResult* c) { return c->broke; });
   const ShownUnit unit = shown_unit(probe.signal_unit(), size), time = shown_unit("s", duration);
   Chart chart{file_name_of(scene.name + ' ' + probe.name + " history " + describe(point)),
               signal(probe) + " over time" + suffix(point),
-              "",
+              any_broke ? "Crosses along the lower edge: the run broke at this time; its curve ends there, "
+                          "or leaves the chart."
+                        : "",
               "time [" + time.name + "]",
               fmt::format("{} [{}]", signal(probe).substr(0, signal(probe).find(" at ")), unit.name),
               false,
@@ -305,10 +315,12 @@ void add_history_chart(const Scene& scene, const std::vector<CaseResult>& cases,
   if (const Curve& exact = measured(*along[0], probe)->exact; !exact.t.empty())
     chart.series.push_back(
         scaled(exact, {probe.reference->label, Series::Style::truth, 0, {}, {}, {}, false}));
-  for (const CaseResult* c : along)
-    chart.series.push_back(
-        scaled(measured(*c, probe)->history,
-               {c->run->label, Series::Style::run, colour_of(scene, *c->run), {}, {}, {}, false}));
+  for (const CaseResult* c : along) {
+    Series s{c->run->label, Series::Style::run, colour_of(c->run->label), {}, {}, {}, false};
+    s.wild = c->broke;
+    if (c->broke) s.broke_x.push_back(c->broke_time * time.factor);
+    chart.series.push_back(scaled(measured(*c, probe)->history, std::move(s)));
+  }
   charts.push_back(std::move(chart));
 }
 

@@ -83,7 +83,7 @@ const std::vector<SceneTable>& scene_tables() {
         "material",
         "plane",
         "solve"}},
-      {"picture", "", {"title", "field", "of", "runs"}},
+      {"picture", "", {"title", "field", "view", "of", "runs"}},
       {"quick", "", {"load", "nu", "dx", "region_density", "runs", "duration", "tolerance"}},
   };
   return tables;
@@ -99,6 +99,12 @@ std::vector<std::string> keys_of(std::string_view table, std::string_view varian
 
 std::vector<std::string> picture_fields() {
   return {"von_mises", "cauchy_xx", "cauchy_yy", "cauchy_zz", "cauchy_xy"};
+}
+
+const std::vector<std::pair<std::string, std::array<double, 3>>>& picture_views() {
+  static const std::vector<std::pair<std::string, std::array<double, 3>>> views = {
+      {"corner", {1, -2, 1}}, {"along_x", {1, 0, 0}}, {"along_y", {0, -1, 0}}, {"along_z", {0, 0, 1}}};
+  return views;
 }
 
 std::vector<std::string> variants_of(std::string_view table) {

@@ -3,8 +3,10 @@
 /// The keys a scene may have, table by table. The loader accepts these and no others; a test asserts that
 /// bench/scenes/README.md documents each of them.
 
+#include <array>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace taut::bench {
@@ -20,6 +22,8 @@ const std::vector<SceneTable>& scene_tables();
 std::vector<std::string> keys_of(std::string_view table, std::string_view variant = "");
 /// The stresses that pictures may show.
 std::vector<std::string> picture_fields();
+/// The named views of pictures: the direction in which the viewer stands.
+const std::vector<std::pair<std::string, std::array<double, 3>>>& picture_views();
 /// The variants of a table ("box", "sphere", …).
 std::vector<std::string> variants_of(std::string_view table);
 

@@ -190,7 +190,7 @@ Scene build_scene(const Node& root, const std::string& name, const std::filesyst
   check_probes(scene);
   if (top.has("picture"))
     for (const Node& node : top.tables("picture")) {
-      scene.pictures.push_back(read_picture(node));
+      scene.pictures.push_back(read_picture(node, context));
       check_labels(node.place, "[picture] runs", scene.pictures.back().runs, scene);
     }
   if (top.has("quick")) apply_quick(top.require("quick"), scene, quick);

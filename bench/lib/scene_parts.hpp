@@ -41,7 +41,7 @@ InitialSpec read_initial(const Node& node, const SceneContext& context);
 
 // scene_probe.cpp
 ProbeSpec read_probe(const Node& node, const SceneContext& context);
-PictureSpec read_picture(const Node& node);
+PictureSpec read_picture(const Node& node, const SceneContext& context);
 
 // scene_run.cpp
 RunSpec read_run(const Node& node, const LatticeSpec* lattice, const SolveSpec& solve);

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <lib/analytic.hpp>
 #include <lib/scene_keys.hpp>
 #include <lib/scene_parts.hpp>
@@ -124,12 +125,39 @@ ProbeSpec read_probe(const Node& node, const SceneContext& context) {
   return probe;
 }
 
-PictureSpec read_picture(const Node& node) {
+namespace {
+
+/// A name, or the direction in which the viewer stands.
+std::array<double, 3> read_view(const TableReader& reader, const SceneContext& context) {
+  if (context.dimension != 3) {
+    if (reader.has("view")) reader.fail_at("view", "needs dimension = 3");
+    return {0, 0, 1};
+  }
+  const Node* node = reader.find("view");
+  if (node && node->as<NodeArray>()) {
+    std::vector<double> from = reader.vector("view", 3);
+    const double length = std::hypot(from[0], from[1], from[2]);
+    if (!(length > 0) || !std::isfinite(length))
+      reader.fail_at("view", "the direction in which the viewer stands must have a length");
+    return {from[0] / length, from[1] / length, from[2] / length};
+  }
+  std::vector<std::string> names;
+  for (const auto& [name, from] : picture_views()) names.push_back(name);
+  const std::string wanted = reader.choice("view", names, "corner");
+  for (const auto& [name, from] : picture_views())
+    if (name == wanted) return from;
+  return {0, 0, 1};
+}
+
+}  // namespace
+
+PictureSpec read_picture(const Node& node, const SceneContext& context) {
   const TableReader reader(node, "picture", keys_of("picture"));
   PictureSpec picture;
   picture.place = node.place;
   picture.title = reader.text("title");
   picture.field = reader.choice("field", picture_fields(), "von_mises");
+  picture.from = read_view(reader, context);
   if (reader.has("of")) {
     const TableReader of(reader.require("of"), "picture.of", keys_of("sweep"));
     for (const std::string& key : keys_of("sweep"))

@@ -91,9 +91,43 @@ std::string brief(std::string_view text, std::size_t most) {
   return cut(std::move(line), most);
 }
 
+std::size_t characters(std::string_view text) {
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+}
+
+std::string shortened(std::string_view text, std::size_t most) {
+  const std::string line = brief(text, 1000);
+  const std::size_t all = characters(line);
+  if (all <= most) return line;
+  const std::size_t head = most / 2, tail = all - (most - 1 - head);  // characters before and from
+  std::string cut_text;
+  std::size_t number = 0;
+  for (const char c : line) {
+    number += (static_cast<unsigned char>(c) & 0xc0) != 0x80;
+    if (number <= head || number > tail)
+      cut_text += c;
+    else if (number == head + 1 && cut_text.size() < line.size() && !cut_text.ends_with("…"))
+      cut_text += "…";
+  }
+  return cut_text;
+}
+
 void print_out(std::string_view text) { print(STDOUT_FILENO, visible(text)); }
 
-void print_error(std::string_view text) { print(STDERR_FILENO, cut(visible(text), 6000)); }
+void print_error(std::string_view text) {
+  // What was given may be of any length: no word of it stands there in full beyond a long path.
+  constexpr std::size_t longest_word = 400;
+  const std::string shown = visible(text);
+  std::string message;
+  for (std::size_t at = 0; at < shown.size() && message.size() <= 20000;) {
+    const std::size_t end = std::min(shown.find_first_of(" \n", at), shown.size());
+    message += cut(shown.substr(at, end - at), longest_word);
+    if (end < shown.size()) message += shown[end];
+    at = end + 1;
+  }
+  print(STDERR_FILENO, cut(std::move(message), 6000));
+}
 
 void erase_line() {
   if (isatty(STDOUT_FILENO) == 1) print(STDOUT_FILENO, "\r\033[K");

@@ -16,6 +16,11 @@ std::string visible(std::string_view text);
 /// The same on one line, and what is longer than `most` bytes cut in its middle.
 std::string brief(std::string_view text, std::size_t most = 80);
 
+/// Number of characters of UTF-8 text.
+std::size_t characters(std::string_view text);
+/// One line of up to `most` characters, with … in its middle where it is cut: a label for a narrow place.
+std::string shortened(std::string_view text, std::size_t most);
+
 /// The only ways to standard output and standard error: made visible, and never thrown out of.
 void print_out(std::string_view text);
 void print_error(std::string_view text);

@@ -44,7 +44,7 @@ TextTable summary(const ToleranceResult& r) {
   for (std::size_t i = 0; i < r.candidates.size(); ++i) {
     const Candidate& c = r.candidates[i];
     const bool chosen = r.met && static_cast<int>(i) == r.chosen;
-    Cells row = {{c.run.label, run_colour(static_cast<int>(i))}};
+    Cells row = {{c.run.label, run_colour(colour_of(c.run.label))}};
     for (const double dx : r.pilot_dx) {
       const Sample* s = pilot(c, dx);
       row.push_back(number(s && s->error ? fmt::format("{:.3g} %", 100 * *s->error) : "–"));
@@ -106,7 +106,13 @@ Chart chart_of(const ToleranceResult& r) {
               {}};
   double least = std::numeric_limits<double>::infinity(), most = 0;
   for (std::size_t i = 0; i < r.candidates.size(); ++i) {
-    Series series{r.candidates[i].run.label, Series::Style::run, static_cast<int>(i), {}, {}, {}, true};
+    Series series{r.candidates[i].run.label,
+                  Series::Style::run,
+                  colour_of(r.candidates[i].run.label),
+                  {},
+                  {},
+                  {},
+                  true};
     for (const Sample& s : r.candidates[i].samples) {
       if (!s.error || *s.error <= 0) continue;
       series.x.push_back(s.seconds());

@@ -47,7 +47,7 @@ std::vector<std::string> probe_rows(const fs::path& file) {
 
 }  // namespace
 
-TEST_CASE("every malformed scene ends with exit code 2, a message and no files") {
+TEST_CASE("F14, F15, F19, F20: every malformed scene ends with exit code 2, a message and no files") {
   for (const taut::test::Mistake& mistake : taut::test::mistakes()) {
     CAPTURE(mistake.name);
     const std::string text = taut::test::with(mistake);
@@ -93,6 +93,17 @@ TEST_CASE("bad options and missing files are bad input too") {
   CHECK(compare("--wrong").status == 2);
   CHECK(compare("--help").status == 0);
   CHECK(compare("--version").out.starts_with("taut-compare "));
+}
+
+TEST_CASE("the message for what is not installed names a section of the README that exists") {
+  const fs::path root = fs::path(TAUT_SCENES) / "../..";
+  const std::string message = read_file(root / "cmake/dependencies.cmake");
+  const std::string before = "see README.md, '";
+  const std::size_t at = message.find(before);
+  REQUIRE(at != std::string::npos);
+  const std::size_t begin = at + before.size();
+  const std::string section = message.substr(begin, message.find('\'', begin) - begin);
+  CHECK(read_file(root / "README.md").find("\n## " + section + '\n') != std::string::npos);
 }
 
 TEST_CASE("a run writes everything it promises") {

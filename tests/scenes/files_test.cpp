@@ -12,7 +12,7 @@ using namespace taut;
 using namespace taut::bench;
 namespace fs = std::filesystem;
 
-TEST_CASE("temporary files follow no links, and what is no file is not replaced") {
+TEST_CASE("F12: temporary files follow no links, and what is no file is not replaced") {
   const fs::path folder = test::fresh_folder("files");
   std::ofstream(folder / "kept") << "kept";
   for (const char* name : {"results.csv", "results.csv.tmp"})
@@ -30,7 +30,7 @@ TEST_CASE("temporary files follow no links, and what is no file is not replaced"
   CHECK(std::distance(fs::directory_iterator(folder), {}) == 4);
 }
 
-TEST_CASE("a folder takes one job at a time, and what killed ones left is cleared") {
+TEST_CASE("F12: a folder takes one job at a time, and what killed ones left is cleared") {
   const fs::path folder = test::fresh_folder("lock");
   fs::create_directory(folder / "fields");
   std::ofstream(folder / "fields/.taut-Ab3dE6.tmp") << "half";

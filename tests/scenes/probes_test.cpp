@@ -58,7 +58,7 @@ Scene swinging(const std::string& probes) {
 
 }  // namespace
 
-TEST_CASE("probes of every kind must lie in the body") {
+TEST_CASE("F14: probes of every kind must lie in the body") {
   for (const std::string& type : {displacement, velocity, stress}) {
     CAPTURE(type);
     for (const char* at :
@@ -135,7 +135,7 @@ TEST_CASE("probes of clouds from files must lie among their particles") {
   std::filesystem::remove(file);
 }
 
-TEST_CASE("an energy that a run has not is found before it runs") {
+TEST_CASE("F14: an energy that a run has not is found before it runs") {
   std::string text =
       test::good_scene +
       "\n[[run]]\nlabel = \"corotated\"\nformulation = \"tl_displacement\"\nmaterial = \"corotated_svk\"\n";
@@ -156,13 +156,13 @@ TEST_CASE("a loaded body that nothing holds is found before it runs") {
   CHECK(has(said, "free to move along x"));
 }
 
-TEST_CASE("a step that never reaches the end is found before it runs") {
+TEST_CASE("F7: a step that never reaches the end is found before it runs") {
   const std::string said = said_of(replaced(test::good_scene, "mode = \"relax\"\ntolerance = 1e-4",
                                             "mode = \"dynamic\"\nduration = 1e-3\nmax_step = 1e-20"));
   CHECK(has(said, "never reach 0.001 s"));
 }
 
-TEST_CASE("a window after the end is found when the scene is read") {
+TEST_CASE("F15: a window after the end is found when the scene is read") {
   try {
     swinging(
         "[[probe]]\nname = \"late\"\ntype = \"kinetic_energy\"\nmeasure = \"peak\"\nwindow = [2e-3, 3e-3]\n");
@@ -172,7 +172,7 @@ TEST_CASE("a window after the end is found when the scene is read") {
   }
 }
 
-TEST_CASE("what is divided by nothing has no value and no status ok") {
+TEST_CASE("F15: what is divided by nothing has no value and no status ok") {
   const Scene scene = swinging(
       "[[probe]]\nname = \"still\"\ntype = \"velocity\"\naxis = \"y\"\nat = [0.0, 0.025]\nmeasure = "
       "\"peak\"\n"
@@ -187,7 +187,7 @@ TEST_CASE("what is divided by nothing has no value and no status ok") {
   CHECK(has(result.measured[2].why_none, "'still', which divides it, is zero"));
 }
 
-TEST_CASE("directions are directions whatever their length") {
+TEST_CASE("F15: directions are directions whatever their length") {
   for (const char* direction : {"[1e200, 0.0]", "[1e-200, 0.0]", "[3.0, 0.0]"}) {
     CAPTURE(direction);
     const Scene scene = parse_scene(
@@ -199,7 +199,7 @@ TEST_CASE("directions are directions whatever their length") {
   }
 }
 
-TEST_CASE("a sweep that begins with no load ends") {
+TEST_CASE("F8: a sweep that begins with no load ends") {
   const Scene scene = parse_scene(test::good_scene + "[sweep]\nload = [0, 100]\n", "s.toml");
   const auto points = scene.points();
   const CaseResult none = run_case(scene, scene.runs[0], points[0], {});
@@ -210,7 +210,7 @@ TEST_CASE("a sweep that begins with no load ends") {
   CHECK(!run_case(scene, scene.runs[0], points[1], {}).broke);
 }
 
-TEST_CASE("a relaxation that does not end says which condition is not met") {
+TEST_CASE("F8: a relaxation that does not end says which condition is not met") {
   const auto what = [](const char* solve) {
     const Scene scene = parse_scene(replaced(test::good_scene, "tolerance = 1e-4", solve), "s.toml");
     return run_case(scene, scene.runs[0], {}, {}).what;

@@ -109,7 +109,7 @@ TEST_CASE("tables that hold no numbers are refused with file and line") {
   CHECK(csv_message("a\n" + std::string(100000, 'x') + '\n').size() < 400);
 }
 
-TEST_CASE("spreadsheets put a byte order mark before the header") {
+TEST_CASE("F20: spreadsheets put a byte order mark before the header") {
   std::ofstream(scratch("bom.csv")) << "\xef\xbb\xbfload,ux\n1,2\n";
   CHECK(CsvTable(scratch("bom.csv")).column("load") == 0);
 }

@@ -84,7 +84,7 @@ bool anything_unfinished(const fs::path& folder) {
 
 }  // namespace
 
-TEST_CASE("nothing that stands in a scene or in the name of a folder is executed") {
+TEST_CASE("F1: nothing that stands in a scene or in the name of a folder is executed") {
   const Folder folder("canary");
   const std::string trap = "`touch canary1` $(touch canary2) '; system(\\\"touch canary3\\\") \\\\";
   std::string text = replaced(taut::test::good_scene, "\"total\"", '"' + trap + '"');
@@ -106,7 +106,7 @@ TEST_CASE("nothing that stands in a scene or in the name of a folder is executed
   }
 }
 
-TEST_CASE("unknown names and file names do not reach the terminal as they are") {
+TEST_CASE("F1: unknown names and file names do not reach the terminal as they are") {
   const Folder folder("escape");
   folder.write("bad.toml", replaced(taut::test::good_scene, "\"x_max\"", "\"\\u001b[2J\""));
   const Outcome outcome = folder.compare("bad.toml --out '\033[31m'");
@@ -119,7 +119,7 @@ TEST_CASE("unknown names and file names do not reach the terminal as they are") 
   CHECK(missing.err.find("no\\u001b[31mwhere.toml") != std::string::npos);
 }
 
-TEST_CASE("values that differ in the seventh digit have rows and files of their own") {
+TEST_CASE("F12: values that differ in the seventh digit have rows and files of their own") {
   const Folder folder("digits");
   folder.write("s.toml", taut::test::good_scene + "[sweep]\nnu = [0.4999999, 0.49999995]\n");
   REQUIRE(folder.compare("s.toml --out result").status == 0);
@@ -133,7 +133,7 @@ TEST_CASE("values that differ in the seventh digit have rows and files of their 
     CHECK(std::distance(fs::directory_iterator(folder.path / "result/fields"), {}) == 2);
 }
 
-TEST_CASE("labels in other scripts have files of their own") {
+TEST_CASE("F12: labels in other scripts have files of their own") {
   const Folder folder("scripts");
   folder.write("s.toml", replaced(taut::test::good_scene, "\"total\"", "\"напор\"") +
                              "[[run]]\nlabel = \"отпор\"\nformulation = \"tl_displacement\"\n");
@@ -142,7 +142,7 @@ TEST_CASE("labels in other scripts have files of their own") {
     CHECK(std::distance(fs::directory_iterator(folder.path / "result/fields"), {}) == 2);
 }
 
-TEST_CASE("one output folder, one job") {
+TEST_CASE("F12: one output folder, one job") {
   const Folder folder("two_jobs");
   folder.write("good.toml", taut::test::good_scene);
   const OutputFolder taken(folder.path / "result");
@@ -151,7 +151,7 @@ TEST_CASE("one output folder, one job") {
   CHECK(outcome.err.find("another job is writing to this folder") != std::string::npos);
 }
 
-TEST_CASE("interrupted jobs keep their rows, write the report, say so and end as signals do") {
+TEST_CASE("F12: interrupted jobs keep their rows, write the report, say so and end as signals do") {
   for (const int number : {SIGINT, SIGTERM}) {
     const Folder folder("interrupt");
     const Outcome outcome = interrupted(folder, number);
@@ -166,7 +166,7 @@ TEST_CASE("interrupted jobs keep their rows, write the report, say so and end as
   }
 }
 
-TEST_CASE("fields that cannot be written do not take the computed row with them") {
+TEST_CASE("F13: fields that cannot be written do not take the computed row with them") {
   if (!taut::has_field_output()) return;
   const Folder folder("full");
   folder.write("good.toml", taut::test::good_scene);
@@ -181,7 +181,7 @@ TEST_CASE("fields that cannot be written do not take the computed row with them"
   CHECK(!anything_unfinished(folder.path));
 }
 
-TEST_CASE("streams that are closed, full or left change no exit code but where output is lost") {
+TEST_CASE("F16: streams that are closed, full or left change no exit code but where output is lost") {
   const Folder folder("streams");
   folder.write("good.toml", taut::test::good_scene);
   CHECK(folder.compare("nowhere.toml 2>&- #").status == 2);
@@ -194,7 +194,7 @@ TEST_CASE("streams that are closed, full or left change no exit code but where o
   CHECK(probe_rows(folder.path / "b/results.csv").size() == 1);
 }
 
-TEST_CASE("a gnuplot that never ends is ended, and the report is there") {
+TEST_CASE("F17: a gnuplot that never ends is ended, and the report is there") {
   const Folder folder("hangs");
   folder.write("slow", "#!/bin/sh\n[ \"$1\" = --version ] || sleep 100\n");
   fs::permissions(folder.path / "slow", fs::perms::owner_all);
@@ -208,7 +208,7 @@ TEST_CASE("a gnuplot that never ends is ended, and the report is there") {
   CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(60));
 }
 
-TEST_CASE("threads beyond the processors are reduced, with a word") {
+TEST_CASE("F18: threads beyond the processors are reduced, with a word") {
   const Folder folder("threads");
   folder.write("good.toml", taut::test::good_scene);
   const Outcome outcome = taut::test::run_program(
@@ -221,12 +221,51 @@ TEST_CASE("threads beyond the processors are reduced, with a word") {
   CHECK(folder.compare("good.toml", "OMP_STACKSIZE=16k").status == 2);
 }
 
-TEST_CASE("a scene whose name begins as an option does") {
+TEST_CASE("F18: threads that wait sleep, unless the environment says otherwise") {
+  const Folder folder("wait");
+  folder.write("good.toml", taut::test::good_scene);
+  const std::string told =
+      "env -u OMP_WAIT_POLICY -u GOMP_SPINCOUNT -u KMP_BLOCKTIME OMP_DISPLAY_ENV=verbose ";
+  const Outcome outcome = folder.compare("good.toml --dry-run", told);
+  CHECK(outcome.status == 0);
+  if (outcome.err.find("GOMP_SPINCOUNT") == std::string::npos) return;  // another OpenMP
+  CHECK(outcome.err.find("GOMP_SPINCOUNT = '1000'") != std::string::npos);
+  const Outcome asked = folder.compare("good.toml --dry-run", told + "GOMP_SPINCOUNT=77 ");
+  CHECK(asked.err.find("GOMP_SPINCOUNT = '77'") != std::string::npos);
+  CHECK(asked.err.find("GOMP_SPINCOUNT = '1000'") == std::string::npos);
+}
+
+TEST_CASE("F20: equal runs write equal files, byte by byte") {
+  if (!taut::has_field_output()) return;
+  const Folder folder("equal");
+  folder.write("good.toml", taut::test::good_scene);
+  REQUIRE(folder.compare("good.toml --out a", "TAUT_GNUPLOT=").status == 0);
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // stamps of time count seconds
+  REQUIRE(folder.compare("good.toml --out b", "TAUT_GNUPLOT=").status == 0);
+  int files = 0;
+  for (const auto& entry : fs::directory_iterator(folder.path / "a/fields")) {
+    ++files;
+    CHECK(read_file(entry.path()) == read_file(folder.path / "b/fields" / entry.path().filename()));
+  }
+  CHECK(files == 1);
+}
+
+TEST_CASE("F20: long arguments are not repeated in full") {
+  const Folder folder("long");
+  const std::string name(5000, 'a');
+  for (const std::string& arguments : {name, "--" + name, "x.toml --tolerance " + name}) {
+    const Outcome outcome = folder.compare(arguments);
+    CHECK(outcome.status == 2);
+    CHECK(outcome.err.size() < 1000);
+  }
+}
+
+TEST_CASE("F20: a scene whose name begins as an option does") {
   const Folder folder("dash");
   CHECK(folder.compare("-x.toml").err.find("give ./-x.toml") != std::string::npos);
 }
 
-TEST_CASE("rows of references that say the same thing twice are refused") {
+TEST_CASE("F15, F20: rows of references that say the same thing twice are refused") {
   const Folder folder("twice");
   folder.write("r.csv", "\xef\xbb\xbfnu,ux\n0.3,1\n0.2,1\n0.3,2\n");
   folder.write("s.toml",
@@ -240,7 +279,7 @@ TEST_CASE("rows of references that say the same thing twice are refused") {
   CHECK(outcome.err.find("r.csv:4: has the same keys as line 2") != std::string::npos);
 }
 
-TEST_CASE("many shapes are one union, quickly") {
+TEST_CASE("F5: many shapes are one union, quickly") {
   const Folder folder("union");
   std::string shapes;
   for (int i = 0; i < 1000; ++i) shapes += "{ type = \"box\", min = [0.0, 0.0], max = [0.2, 0.05] }, ";
@@ -250,7 +289,7 @@ TEST_CASE("many shapes are one union, quickly") {
   CHECK(folder.compare("u.toml --out result --no-fields").status == 0);
 }
 
-TEST_CASE("what a case will take is told before, and refused where it is too much") {
+TEST_CASE("F5, F7: what a case will take is told before, and refused where it is too much") {
   const Folder folder("sizes");
   folder.write("good.toml", taut::test::good_scene + "[sweep]\nload = [1, 2]\n");
   const Outcome table = folder.compare("good.toml --dry-run --out result");

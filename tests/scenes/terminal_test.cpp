@@ -8,7 +8,7 @@
 
 using namespace taut::bench;
 
-TEST_CASE("nothing that a terminal obeys passes") {
+TEST_CASE("F1: nothing that a terminal obeys passes") {
   CHECK(visible("plain, ν = 0.3 µm\n\tend") == "plain, ν = 0.3 µm\n\tend");
   CHECK(visible("\x1b[31mred\a\r\x7f") == "\\u001b[31mred\\u0007\\u000d\\u007f");
   CHECK(visible(std::string_view("a\0b", 3)) == "a\\u0000b");
@@ -23,7 +23,7 @@ TEST_CASE("nothing that a terminal obeys passes") {
   CHECK(visible(visible("\x1b")) == visible("\x1b"));
 }
 
-TEST_CASE("messages cut long text, never inside a character") {
+TEST_CASE("F20: messages cut long text, never inside a character") {
   CHECK(brief("short\nlines") == "short lines");
   const std::string long_text = brief(std::string(1000000, 'x') + "end");
   CHECK(long_text.size() < 120);
@@ -34,7 +34,15 @@ TEST_CASE("messages cut long text, never inside a character") {
   CHECK(brief(greek).find('\\') == std::string::npos);
 }
 
-TEST_CASE("gnuplot gets text in single quotes, which hold everything") {
+TEST_CASE("labels for narrow places are cut in their middle") {
+  CHECK(shortened("abcdef", 6) == "abcdef");
+  CHECK(shortened("abcdefg", 6) == "abc…fg");
+  CHECK(characters(shortened(std::string(500, 'x'), 40)) == 40);
+  CHECK(shortened("ννννννν", 5) == "νν…νν");
+  CHECK(characters("ν = 0") == 5);
+}
+
+TEST_CASE("F1: gnuplot gets text in single quotes, which hold everything") {
   using gnuplot::Literal;
   using gnuplot::Script;
   CHECK(Literal("`touch x` \"$(y)\" \\").str() == "'`touch x` \"$(y)\" \\'");
@@ -47,7 +55,7 @@ TEST_CASE("gnuplot gets text in single quotes, which hold everything") {
   static_assert(!std::is_convertible_v<std::string, Literal>);
 }
 
-TEST_CASE("file names are portable and as long as file systems take") {
+TEST_CASE("F12: file names are portable and as long as file systems take") {
   CHECK(file_name_of("A/B") == "a_b");
   CHECK(file_name_of("../../etc/passwd") == "etc_passwd");
   CHECK(file_name_of("напор") != file_name_of("отпор"));

@@ -78,7 +78,10 @@ void OutputFile::write(std::string_view content) {
 void OutputFile::reserve(std::size_t bytes) {
   const int error = posix_fallocate(descriptor_, 0, static_cast<off_t>(bytes));
   if (error == ENOSPC || error == EDQUOT || error == EFBIG) fail("write", error);
-  if (ftruncate(descriptor_, 0) != 0) fail("write", errno);
+}
+
+void OutputFile::cut(std::size_t bytes) {
+  if (ftruncate(descriptor_, static_cast<off_t>(bytes)) != 0) fail("write", errno);
 }
 
 void OutputFile::commit() {

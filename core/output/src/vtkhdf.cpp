@@ -7,6 +7,8 @@
 
 #ifdef TAUT_HAS_HDF5
 #include <hdf5.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <cstdint>
 #include <numeric>
@@ -145,11 +147,35 @@ void write_contents(hid_t out, std::span<const double> xyz, std::span<const Poin
     write_dataset(points, array.name, H5T_NATIVE_DOUBLE, n, array.components, array.values.data());
 }
 
-void write_file(const std::string& file, std::span<const double> xyz, std::span<const PointArray> arrays) {
-  Handle out(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose, "create the file");
+/// What HDF5 still wants to write goes to memory.
+void write_no_more(hid_t file) {
+  int* descriptor = nullptr;
+  if (H5Fget_vfd_handle(file, H5P_DEFAULT, reinterpret_cast<void**>(&descriptor)) < 0 || !descriptor) return;
+  const int memory = memfd_create("taut", MFD_CLOEXEC);
+  if (memory < 0) return;
+  dup2(memory, *descriptor);
+  close(memory);
+}
+
+/// HDF5 1.10 crashes at the program's end where one of its writes has failed. So none may: there is room for
+/// `bytes`, which are no fewer than it needs, before the first.
+void write_file(OutputFile& file, std::size_t bytes, std::span<const double> xyz,
+                std::span<const PointArray> arrays) {
+  file.reserve(bytes);  // before HDF5 knows of it; it gives the room up
+  Handle out(H5Fcreate(file.temporary().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose,
+             "create the file");
+  try {
+    file.reserve(bytes);
+  } catch (const Error&) {
+    write_no_more(out);
+    throw;
+  }
   write_contents(out, xyz, arrays);
   check(H5Fflush(out, H5F_SCOPE_GLOBAL), "write the file");
+  hsize_t size = 0;
+  check(H5Fget_filesize(out, &size), "measure the file");
   out.close("close the file");
+  file.cut(size);
 }
 
 }  // namespace
@@ -159,11 +185,9 @@ void write_vtkhdf_points(const std::string& file, std::span<const double> xyz,
   const QuietErrors quiet;
   OutputFile out(file);
   try {
-    // HDF5 1.10 crashes at the program's end where a file could not be written to its own.
     std::size_t bytes = sizeof(double) * xyz.size() + 25 * (xyz.size() / 3) + (std::size_t{1} << 16);
     for (const PointArray& array : arrays) bytes += sizeof(double) * array.values.size();
-    out.reserve(bytes);
-    write_file(out.temporary(), xyz, arrays);
+    write_file(out, bytes, xyz, arrays);
     out.commit();
   } catch (const std::exception& error) {
     throw RunError(file + ": cannot write the fields: " + error.what());

@@ -24,9 +24,11 @@ class OutputFile {
   const std::string& temporary() const { return temporary_; }
   /// \throws RunError with what the system said, such as a disk that is full.
   void write(std::string_view content);
-  /// Makes sure that there is room for so many bytes, for writers that do not bear its end well.
+  /// Takes room for so many bytes, for writers that do not bear its end well: the file has them then.
   /// \throws RunError where there is not
   void reserve(std::size_t bytes);
+  /// Cuts it off behind so many bytes. \throws RunError
+  void cut(std::size_t bytes);
   /// To the disk, then to its name. \throws RunError
   void commit();
 
