@@ -7,12 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <search_variants.hpp>
 #include <set>
 #include <span>
 #include <string>
 #include <taut/base/error.hpp>
 #include <taut/neighbors/search.hpp>
+#include <taut/neighbors/search_variants.hpp>
 #include <utility>
 #include <vector>
 
