@@ -20,6 +20,7 @@ function(taut_require package version target url sha256)
   if(NOT TAUT_FETCH)
     set(seen)
     if(${package}_CONSIDERED_VERSIONS)
+      list(REMOVE_DUPLICATES ${package}_CONSIDERED_VERSIONS)
       set(seen " (there is ${${package}_CONSIDERED_VERSIONS})")
     endif()
     message(FATAL_ERROR "taut needs ${package} ${version} or later${seen}. Install its package (see README.md, "

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs taut-compare on mutated scenes, clouds, references and command lines, and holds it to its contract.
 
-    fuzz.py TAUT_COMPARE SCENE_FOLDER [--count N] [--seed S] [--keep DIR]
+    fuzz.py TAUT_COMPARE SCENE_FOLDER [--count N] [--seed S] [--keep DIR] [--sanitized]
 
 Every mutation must end with exit code 0, 1 or 2 within limits of time and memory, or, where a job is long, with 143
 when SIGTERM tells it to; exit code 2 says what is wrong at
@@ -262,8 +262,9 @@ def small_scenes(folder):
     return [p for p in sorted(pathlib.Path(folder).glob("*.toml")) if p.stat().st_size < 20000]
 
 
-def limits():
-    resource.setrlimit(resource.RLIMIT_AS, (BYTES, BYTES))
+def limits(sanitized):
+    if not sanitized:  # the sanitizers' own maps take terabytes of addresses
+        resource.setrlimit(resource.RLIMIT_AS, (BYTES, BYTES))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 28, 1 << 28))
 
@@ -312,6 +313,7 @@ def findings(code, out, err, folder, before, command=None):
                     yield "status broke with a value"
 
 
+<<<<<<< HEAD
 def command_line(rng, program):
     """A good one with arguments that are left out, put in or repeated. Where it says --out, that is known."""
     words = ["scene.toml", "--quick", "--out", "out", "--threads", "1"]
@@ -327,6 +329,9 @@ def command_line(rng, program):
 
 
 def try_one(program, scenes, seed, keep):
+=======
+def try_one(program, scenes, seed, keep, sanitized):
+>>>>>>> build
     rng = random.Random(seed)
     with tempfile.TemporaryDirectory(prefix="taut-fuzz-") as name:
         folder = pathlib.Path(name)
@@ -359,17 +364,21 @@ def try_one(program, scenes, seed, keep):
             (folder / file).write_bytes(text.encode("utf-8", "surrogatepass"))
         before = {str(p.relative_to(folder)) for p in folder.rglob("*")}
         environment = dict(os.environ, OMP_WAIT_POLICY="passive")
+        if sanitized:  # by default they leave with 1, as a run that failed does
+            environment["ASAN_OPTIONS"] = f"exitcode=99:hard_rss_limit_mb={BYTES >> 20}"
+            environment["UBSAN_OPTIONS"] = "exitcode=99:print_stacktrace=1"
+        seconds = SECONDS * (5 if sanitized else 1)
         if rng.randrange(4):
             environment["TAUT_GNUPLOT"] = ""  # charts are slow: in every fourth
-        run = subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=limits, env=environment)
+        run = subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=lambda: limits(sanitized), env=environment)
         told = False
         try:
-            streams = run.communicate(timeout=SECONDS)
+            streams = run.communicate(timeout=seconds)
         except subprocess.TimeoutExpired:
             told = True
             run.terminate()
             try:
-                streams = run.communicate(timeout=3 * SECONDS)
+                streams = run.communicate(timeout=3 * seconds)
             except subprocess.TimeoutExpired:
                 run.kill()
                 streams = run.communicate()
@@ -378,6 +387,8 @@ def try_one(program, scenes, seed, keep):
         bad = list(findings(code, out, err, folder, before, None if what != 6 else command))
         for finding in bad:
             print(f"seed {seed}: {finding}", flush=True)
+        if sanitized and code == 99:
+            print(err[:4000], flush=True)
         if bad and keep:
             target = pathlib.Path(keep) / f"seed_{seed}"
             shutil.rmtree(target, ignore_errors=True)
@@ -393,6 +404,7 @@ def main():
     parser.add_argument("--seconds", type=float, default=math.inf, help="stop after this long")
     parser.add_argument("--seed", type=int, default=1, help="of the first mutation; each has the next")
     parser.add_argument("--keep", help="folder for what breaks the contract")
+    parser.add_argument("--sanitized", action="store_true", help="the program is built with sanitizers")
     options = parser.parse_args()
     program = os.path.abspath(options.program)
     scenes = small_scenes(options.scenes)
@@ -402,9 +414,13 @@ def main():
         if time.monotonic() - start > options.seconds:
             break
         tried += 1
+<<<<<<< HEAD
         if tried % 1000 == 0:
             print(f"{tried} mutations, {found} with findings", flush=True)
         found += bool(try_one(program, scenes, seed, options.keep))
+=======
+        found += bool(try_one(program, scenes, seed, options.keep, options.sanitized))
+>>>>>>> build
     print(f"{tried} mutations, {found} with findings, {time.monotonic() - start:.0f} s")
     return 1 if found or not tried else 0
 

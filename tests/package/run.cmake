@@ -39,9 +39,7 @@ if(KIND STREQUAL "find_package")
   run(${CMAKE_COMMAND} --build ${BUILD}/${name} --config Release --target consumer)
   run(${BUILD}/${name}/Release/consumer)
 else()
-  # Without optimisation: what is tested is the build, and it takes a third of the time.
-  run(${CMAKE_COMMAND} -S ${SOURCE}/${KIND} -B ${BUILD}/build -G Ninja -DCMAKE_CXX_COMPILER=${COMPILER} ${launcher}
-      -DCMAKE_BUILD_TYPE=Debug)
-  run(${CMAKE_COMMAND} --build ${BUILD}/build)
-  run(${BUILD}/build/consumer)
+  # That the project configures, and its headers are found: .ci/run builds and runs all of it, by the other compiler.
+  run(${CMAKE_COMMAND} -S ${SOURCE}/${KIND} -B ${BUILD}/build -G Ninja -DCMAKE_CXX_COMPILER=${COMPILER} ${launcher})
+  run(${CMAKE_COMMAND} --build ${BUILD}/build --target ${SOURCE}/main.cpp^)
 endif()

@@ -1,0 +1,1 @@
+// Holds the precompiled header of the tests; main.cpp asks doctest for more than that has.
