@@ -31,7 +31,7 @@ REGIONS = {
     "core/formulations/src/ul_artificial_stress.cpp": (1, ARITHMETIC),
     "boundary/src/loads.cpp": (1, ARITHMETIC),
     "integrators/src/relax.cpp": (2, ARITHMETIC),
-    "integrators/src/vector_ops.cpp": (3, ARITHMETIC),
+    "integrators/src/vector_ops.cpp": (6, ARITHMETIC),
     "neighbors/src/cell_grid.cpp": (4, ARITHMETIC),
     "neighbors/src/clusters.cpp": (2, ARITHMETIC),
     "neighbors/src/filter.cpp": (1, GUARDED),

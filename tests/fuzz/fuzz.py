@@ -313,7 +313,6 @@ def findings(code, out, err, folder, before, command=None):
                     yield "status broke with a value"
 
 
-<<<<<<< HEAD
 def command_line(rng, program):
     """A good one with arguments that are left out, put in or repeated. Where it says --out, that is known."""
     words = ["scene.toml", "--quick", "--out", "out", "--threads", "1"]
@@ -328,10 +327,7 @@ def command_line(rng, program):
     return [program, *words]
 
 
-def try_one(program, scenes, seed, keep):
-=======
 def try_one(program, scenes, seed, keep, sanitized):
->>>>>>> build
     rng = random.Random(seed)
     with tempfile.TemporaryDirectory(prefix="taut-fuzz-") as name:
         folder = pathlib.Path(name)
@@ -414,13 +410,7 @@ def main():
         if time.monotonic() - start > options.seconds:
             break
         tried += 1
-<<<<<<< HEAD
-        if tried % 1000 == 0:
-            print(f"{tried} mutations, {found} with findings", flush=True)
-        found += bool(try_one(program, scenes, seed, options.keep))
-=======
         found += bool(try_one(program, scenes, seed, options.keep, options.sanitized))
->>>>>>> build
     print(f"{tried} mutations, {found} with findings, {time.monotonic() - start:.0f} s")
     return 1 if found or not tried else 0
 
