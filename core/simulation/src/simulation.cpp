@@ -191,7 +191,7 @@ void SimulationImpl<D>::prescribe(const Where<D>& where, int axis, PrescribedMot
   if (axis < 0 || axis >= D)
     throw InputError(fmt::format("prescribe: axis {} is not one of 0 … {}", axis, D - 1));
   // Conditions know the user's coordinates.
-  conditions.push_back([this, axis, selected = select(where, "prescribe"),
+  this->conditions.push_back([this, axis, selected = select(where, "prescribe"),
                         local = motion.seen_from(cloud.origin)] { hold(selected, axis, local); });
 }
 template <int D>
