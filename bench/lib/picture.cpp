@@ -312,7 +312,7 @@ bool write_picture(const PictureSpec& picture, const std::vector<const CaseResul
   look.high = high;
 
   const int columns = cases.size() > 8 ? 3 : cases.size() > 1 ? 2 : 1;
-  if (columns > 2) look.longest_label = 38;
+  if (columns > 2) look.longest_label = 34;
   const int rows = (static_cast<int>(cases.size()) + columns - 1) / columns;
   const double width = 1240, panel_width = (width - 150) / columns - 60;
   const double panel_height =

@@ -11,6 +11,7 @@
 #include <lib/report.hpp>
 #include <lib/scene_charts.hpp>
 #include <lib/text_table.hpp>
+#include <lib/view.hpp>
 
 namespace taut::bench {
 namespace {
@@ -251,7 +252,7 @@ void write_pictures(HtmlPage& page, const SceneReport& part, const std::filesyst
                   picture.title +
                       ". Particles at their deformed places, coloured by stress; dashed: the "
                       "undeformed outline. A run that broke is shown in its last good state." +
-                      (part.scene->dimension == 3
+                      (part.scene->dimension == 3 && !View(picture.from).is_straight()
                            ? " Faces seen at a slant are darker where light falls on them less."
                            : ""));
     else {
