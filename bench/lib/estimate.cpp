@@ -11,6 +11,7 @@
 #include <lib/estimate.hpp>
 #include <lib/names.hpp>
 #include <limits>
+#include <taut/operators/registry.hpp>
 
 namespace taut::bench {
 namespace {
@@ -26,14 +27,16 @@ struct Cost {
 
 Cost cost_of(const Method& method, int dimension, bool regular) {
   const bool solid = dimension == 3;
-  if (!has_pairs(method.formulation))
-    return {solid ? 500.0 : 370.0, 0, solid ? 40.0 : 20.0, 0, solid ? 12.0 : 5.0};
-  if (method.formulation.starts_with("ul_")) return {solid ? 330.0 : 320.0, 6, 45, 2.5, 3};
+  const FormulationTraits& traits = formulation_traits(method.formulation);
+  if (!traits.pairs) return {solid ? 500.0 : 370.0, 0, solid ? 40.0 : 20.0, 0, solid ? 12.0 : 5.0};
+  if (traits.reference == Reference::updated) return {solid ? 330.0 : 320.0, 6, 45, 2.5, 3};
   const double base = solid ? 600 : 370;
-  if (method.formulation != "tl_displacement")
-    return {base, 33, 60, 8, 95};  // pairs with a stress of their own
-  if (method.operators == "compatible") return {base, 62, 20, 4, 55};
-  if (method.operators == "antisymmetric") return {base, 46, 20, 2.75, 70};
+  if (traits.stress == StressAt::bonds) return {base, 33, 60, 8, 95};  // pairs with a stress of their own
+  if (traits.operators) {
+    const OperatorTraits& operators = operator_traits(method.operators);
+    if (operators.areas && operators.adjoint) return {base, 62, 20, 4, 55};
+    if (operators.areas) return {base, 46, 20, 2.75, 70};
+  }
   if (regular) return {solid ? 540.0 : 360.0, 0, 7, 0.83, 15};
   return {base, 18, 20, 2.75, 34};
 }
@@ -98,7 +101,7 @@ Estimate estimate(const Scene& scene, const RunSpec& run, const SweepPoint& poin
     }
     e.particles = std::max(1.0, places * body.fraction);
   }
-  const bool updated = run.method.formulation.starts_with("ul_");
+  const bool updated = is_updated(run.method.formulation);
   const double skin = updated ? 1 + run.method.skin : 1;
   const double each =
       has_pairs(run.method.formulation) ? neighbours(run.method.support_dx * skin, scene.dimension) : 0;
