@@ -4,6 +4,10 @@ install(TARGETS taut EXPORT tautTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBD
 foreach(room ${taut_public})
   install(DIRECTORY ${room}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp")
 endforeach()
+if(TAUT_BENCH)
+  install(TARGETS taut_bench EXPORT tautTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(FILES bench/include/taut/compare.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/taut)
+endif()
 install(EXPORT tautTargets NAMESPACE taut:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/taut)
 configure_package_config_file(cmake/tautConfig.cmake.in tautConfig.cmake
                               INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/taut)

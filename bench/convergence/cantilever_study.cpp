@@ -25,7 +25,7 @@ struct Job {
 
 std::string label_of(const Job& job) {
   const Method& m = job.method;
-  const std::string formulation = m.formulation == "tl_displacement" ? "" : ", " + m.formulation;
+  const std::string formulation = m.formulation == with_defaults({}).formulation ? "" : ", " + m.formulation;
   return (job.jittered ? "jittered" : "lattice") +
          (has_pairs(m.formulation) ? fmt::format(", {}, {}, {:g} dx", m.operators, m.kernel, m.support_dx)
                                    : "") +
@@ -50,16 +50,16 @@ class CantileverStudy {
     const std::string kernel = method.kernel;
     const double support_dx = method.support_dx;
     for (const std::string& operators : names().operators) {
-      if (operators == "standard") continue;
+      if (exactness(operators) < 1) continue;
       // With their wide support they take as long as all others together.
-      if (operators == "quadratic" && options.common.quick) continue;
+      if (exactness(operators) > 1 && options.common.quick) continue;
       method.operators = operators;
       method.kernel = kernel;
       // A quadratic takes more neighbours than 1.5 dx reaches.
-      method.support_dx = operators == "quadratic" ? 2.4 : support_dx;
+      method.support_dx = std::max(support_dx, default_support(method.formulation, operators));
       variants_.push_back({method});
       method.kernel = "quadratic";
-      if (operators != "corrected" && kernel != "quadratic") variants_.push_back({method});
+      if (operators != with_defaults({}).operators && kernel != method.kernel) variants_.push_back({method});
     }
     variants_.push_back({{.formulation = "tl_stress_points"}});
   }

@@ -4,6 +4,7 @@
 #include <convergence/hexahedral_fem.hpp>
 #include <convergence/run_row.hpp>
 #include <taut/base/error.hpp>
+#include <taut/materials/registry.hpp>
 #include <taut/output/stress_recovery.hpp>
 
 namespace taut::bench {
@@ -75,8 +76,8 @@ CubeRun run_cube(const CubeSpec& spec, int threads) {
     }
 
   std::optional<StressRecovery<3>> recovery;
-  if (spec.recover && run.row.material == "linear_elastic") recovery.emplace(*simulation);
-  const bool rates = run.row.material == "hypoelastic";
+  const bool rates = material_registry().find(run.row.material).traits.kind == MaterialKind::rate;
+  if (spec.recover && !rates) recovery.emplace(*simulation);
   const auto take = [&](CubeErrorSums& sums) {
     sums.add(
         cloud, start + simulation->time(), [&](std::size_t i) { return simulation->velocity(i); },

@@ -15,9 +15,6 @@ namespace {
 
 constexpr double jitter = 0.15;
 
-/// Updated Lagrangian forms have no operators but a choice of velocity gradient, of two of the names.
-bool updated(const std::string& formulation) { return formulation.starts_with("ul_"); }
-
 std::vector<Method> methods() {
   std::vector<Method> all;
   for (const std::string& formulation : names().formulations) {
@@ -27,16 +24,17 @@ std::vector<Method> methods() {
         all.push_back({.formulation = formulation, .zero_energy_control = control});
       continue;
     }
-    for (const std::string& operators : names().operators) {
-      if (updated(formulation) && operators != "standard" && operators != "corrected") continue;
+    // Updated Lagrangian forms have no operators but a choice of velocity gradient, of two of the names.
+    const std::vector<std::string> gradients = {"standard", "corrected"};
+    for (const std::string& operators : is_updated(formulation) ? gradients : names().operators) {
       for (const double support_dx : {1.5, 2.4}) {
         Method m = with_defaults({});
         m.formulation = formulation;
         m.operators = operators;
         m.support_dx = support_dx;
-        if (updated(formulation)) m.velocity_gradient = operators;
+        if (is_updated(formulation)) m.velocity_gradient = operators;
         all.push_back(m);
-        if (formulation != "tl_displacement" || operators == "standard") continue;
+        if (!has_parameter(formulation, "zero_energy_control") || exactness(operators) < 1) continue;
         for (const double control : {1.0, 10.0}) {
           m.zero_energy_control = control;
           all.push_back(m);
@@ -59,7 +57,7 @@ constexpr Variant variants[] = {{false, false}, {true, false}, {false, true}, {t
 /// Whether runs from the undeformed state tell anything new of a method: rate forms start there anyway. Wide
 /// supports and controlled methods are left out, for these runs are twice as long.
 bool takes(const Variant& variant, const Method& m) {
-  return !variant.undeformed || (!updated(m.formulation) && !m.zero_energy_control && m.support_dx < 2);
+  return !variant.undeformed || (!is_updated(m.formulation) && !m.zero_energy_control && m.support_dx < 2);
 }
 
 class CubeStudy {
@@ -244,7 +242,7 @@ class CubeStudy {
     for (const bool rates : {false, true}) {
       Refinement part = all;
       std::erase_if(part.lines, [&](const RefinementLine& l) {
-        return !l.yardstick && updated(l.row.formulation) != rates;
+        return !l.yardstick && is_updated(l.row.formulation) != rates;
       });
       if (part.lines.size() < 2) continue;
       const char* family = rates ? "updated" : "total";

@@ -100,7 +100,7 @@ std::vector<Method> methods(bool quick) {
         for (const PairPrecision precision :
              {PairPrecision::single_precision, PairPrecision::double_precision}) {
           // Double precision is compared on one kernel: what it costs and gives does not depend on it.
-          const bool other_kernel = kernel != std::string("wendland_c2");
+          const bool other_kernel = kernel != with_defaults({}).kernel;
           const bool in_double = precision == PairPrecision::double_precision;
           if ((other_kernel && in_double) || (quick && (other_kernel || in_double))) continue;
           Method m = with_defaults({});
@@ -110,7 +110,7 @@ std::vector<Method> methods(bool quick) {
           m.pair_precision = precision;
           all.push_back(m);
           // Nor does what control of zero-energy modes costs and gives depend on kernel or precision.
-          if (other_kernel || in_double || operators == "standard") continue;
+          if (other_kernel || in_double || exactness(operators) < 1) continue;
           Method bonds = m;
           bonds.formulation = "tl_bond_associated";
           all.push_back(bonds);
@@ -136,7 +136,7 @@ std::optional<double> error_size(const Row& row) {
 
 /// Colours tell operators apart, marks what is done with them.
 int colour_of(const Method& m) {
-  const std::vector<std::string>& operators = names().operators;
+  const std::vector<std::string> operators = names().operators;
   const auto found =
       has_pairs(m.formulation) ? std::find(operators.begin(), operators.end(), m.operators) : operators.end();
   return static_cast<int>(found - operators.begin());
@@ -148,7 +148,7 @@ const std::vector<std::string>& mark_names() {
 }
 int mark_of(const Method& m) {
   if (!has_pairs(m.formulation)) return 0;
-  if (m.formulation != "tl_displacement") return 3;
+  if (formulation_traits(m.formulation).stress == StressAt::bonds) return 3;
   return m.zero_energy_control ? 2 : m.support_dx > 2;
 }
 

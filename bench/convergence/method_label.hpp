@@ -7,6 +7,7 @@
 #include <lib/names.hpp>
 #include <lib/results.hpp>
 #include <string>
+#include <taut/formulations/auto_method.hpp>
 #include <taut/operators/method.hpp>
 
 namespace taut::bench {
@@ -17,7 +18,7 @@ inline std::string label_of(const Method& m) {
   const std::string control =
       m.zero_energy_control ? fmt::format(", control {:g}", *m.zero_energy_control) : "";
   if (!has_pairs(m.formulation)) return m.formulation + control;
-  const std::string formulation = m.formulation == "tl_displacement" ? "" : m.formulation + ", ";
+  const std::string formulation = m.formulation == with_defaults({}).formulation ? "" : m.formulation + ", ";
   return fmt::format("{}{}, {:g} dx{}", formulation, m.operators, m.support_dx, control);
 }
 

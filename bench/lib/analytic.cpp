@@ -4,6 +4,8 @@
 #include <cmath>
 #include <lib/analytic.hpp>
 #include <lib/scene_parts.hpp>
+#include <map>
+#include <set>
 #include <taut/geometry/local_origin.hpp>
 #include <taut/materials/hypoelastic_bar.hpp>
 
@@ -86,9 +88,10 @@ Analytic bar_wave_incident(const Scene& scene, const SweepPoint& point, const Pr
 /// Homogeneous stretch of P = mu (F - F^-T) + lambda ln J F^-T by the displacement of the faces.
 Analytic neo_hookean_stretch(const Scene& scene, const RunSpec& run, const SweepPoint& point,
                              const ProbeSpec& probe) {
+  static const std::set<std::string> materials = {"neo_hookean"};
   const MaterialSpec material = material_of(scene, run, point);
   const bool plane_stress = scene.dimension == 2 && material.parameters.plane == Plane::stress;
-  if (scene.geometry.type != "box" || material.model != "neo_hookean" || plane_stress ||
+  if (scene.geometry.type != "box" || !materials.contains(material.model) || plane_stress ||
       probe.type != "cauchy_stress" || probe.row != probe.column)
     fail(probe.reference->place,
          "[reference] neo_hookean_stretch: needs a box, material neo_hookean (plane strain) and a probe of a "
@@ -132,6 +135,22 @@ std::optional<double> svk_stretch(double E, double stress, bool corotated) {
   return s;
 }
 
+/// Stretch of a bar with free sides under a dead axial stress, of the materials that have a closed form.
+using BarLaw = std::function<std::optional<double>(const MaterialParameters&, double stress)>;
+const std::map<std::string, BarLaw>& bar_laws() {
+  static const std::map<std::string, BarLaw> laws = {
+      {"hypoelastic",
+       [](const MaterialParameters& m, double stress) -> std::optional<double> {
+         if (const auto state = hypoelastic_bar(m, BarSides::free, stress)) return state->stretch;
+         return {};
+       }},
+      {"st_venant_kirchhoff",
+       [](const MaterialParameters& m, double stress) { return svk_stretch(m.E, stress, false); }},
+      {"corotated_svk",
+       [](const MaterialParameters& m, double stress) { return svk_stretch(m.E, stress, true); }}};
+  return laws;
+}
+
 /// End displacement of a homogeneous bar of the run's own material.
 Analytic own_law_bar(const Scene& scene, const RunSpec& run, const SweepPoint& point,
                      const ProbeSpec& probe) {
@@ -140,9 +159,9 @@ Analytic own_law_bar(const Scene& scene, const RunSpec& run, const SweepPoint& p
   for (const BoundarySpec& boundary : scene.boundaries)
     if (boundary.type == "load" && boundary.selection.on == "x_max") load = &boundary;
   const bool plane_stress = scene.dimension == 2 && material.parameters.plane == Plane::stress;
-  const bool hypo = material.model == "hypoelastic", corotated = material.model == "corotated_svk";
-  const bool svk = corotated || material.model == "st_venant_kirchhoff";
-  if (scene.geometry.type != "box" || !load || !plane_stress || !(hypo || svk) ||
+  const auto& laws = bar_laws();
+  const auto law = laws.find(material.model);
+  if (scene.geometry.type != "box" || !load || !plane_stress || law == laws.end() ||
       probe.type != "displacement" || probe.row != 0)
     fail(probe.reference->place,
          "[reference] own_law_bar: needs a box in plane stress, a load on x_max, material hypoelastic, "
@@ -150,12 +169,7 @@ Analytic own_law_bar(const Scene& scene, const RunSpec& run, const SweepPoint& p
          "corotated_svk, and a probe of the displacement along x");
   const double height = coordinate_difference(scene.geometry.max[1], scene.geometry.min[1]);
   const double stress = (load->direction[0] > 0 ? 1 : -1) * force_of(*load, point) / height;
-  std::optional<double> stretch;
-  if (svk) {
-    stretch = svk_stretch(material.parameters.E, stress, corotated);
-  } else if (const auto state = hypoelastic_bar(material.parameters, BarSides::free, stress)) {
-    stretch = state->stretch;
-  }
+  const std::optional<double> stretch = law->second(material.parameters, stress);
   if (!stretch) return {};
   return {(*stretch - 1) * coordinate_difference(scene.geometry.max[0], scene.geometry.min[0]), {}};
 }

@@ -1,21 +1,13 @@
 #include <algorithm>
 #include <lib/auto_rules.hpp>
 #include <lib/build.hpp>
+#include <taut/materials/registry.hpp>
 
 namespace taut::bench {
-namespace {
-
-bool has_rate_law(const std::string& model, MaterialParameters parameters) {
-  // Which family a law belongs to does not depend on the dimension.
-  return dynamic_cast<const Hypoelastic<3>*>(make_material<3>(model, parameters).get()) != nullptr;
-}
-
-}  // namespace
-
 AutoFacts facts_of(const Scene& scene, const RunSpec& run, const std::set<std::string>& given) {
   AutoFacts facts;
   const MaterialSpec material = material_of(scene, run, {});
-  facts.rate_law = has_rate_law(material.model, material.parameters);
+  facts.rate_law = material_registry().find(material.model).traits.kind == MaterialKind::rate;
   const bool from_file = scene.geometry.type == "csv";
   if (from_file)
     add_facts_of_file(scene, facts);

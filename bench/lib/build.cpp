@@ -2,8 +2,8 @@
 #include <lib/build.hpp>
 #include <lib/scene_parts.hpp>
 #include <limits>
+#include <taut/formulations/registry.hpp>
 #include <taut/geometry/local_origin.hpp>
-#include <taut/operators/operators.hpp>
 
 namespace taut::bench {
 namespace {
@@ -78,7 +78,7 @@ struct Bounds {
 template <int D>
 Bounds<D> bounds_of(const Scene& scene, const RunSpec& run, const SweepPoint& point, const Cloud<D>& cloud) {
   Bounds<D> bounds;
-  const bool facets = needs_areas(run.method.operators) && !cloud.facets.empty();
+  const bool facets = needs_areas(run.method) && !cloud.facets.empty();
   if (scene.geometry.type == "csv") {
     bounds.min.setConstant(std::numeric_limits<double>::max());
     bounds.max = -bounds.min;
@@ -278,7 +278,7 @@ Cloud<D> build_cloud(const Scene& scene, const RunSpec& run, const SweepPoint& p
   options.jitter = lattice.jitter;
   options.seed = lattice.seed;
   // Cell-centred ones have none, which the formulation says better.
-  options.cells = run.method.formulation == "tl_stress_points" && lattice.kind == Lattice::node_centred;
+  options.cells = formulation_traits(run.method.formulation).cells && lattice.kind == Lattice::node_centred;
   if (lattice.kind == Lattice::cell_centred)
     for (const BoundarySpec& boundary : scene.boundaries)
       if (boundary.layers > 0) {

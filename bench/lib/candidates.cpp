@@ -38,7 +38,7 @@ bool same(const RunSpec& a, const RunSpec& b) {
 
 std::string label_of(const Method& m) {
   if (!has_pairs(m.formulation)) return m.formulation;
-  const std::string& what = m.formulation.starts_with("tl_") ? m.operators : m.formulation;
+  const std::string& what = has_operators(m.formulation) ? m.operators : m.formulation;
   return fmt::format("{}, {}, {:g} dx", what, m.kernel, m.support_dx);
 }
 

@@ -13,6 +13,7 @@
 #include <lib/names.hpp>
 #include <lib/slowest_mode.hpp>
 #include <limits>
+#include <taut/operators/registry.hpp>
 
 namespace taut::bench {
 namespace {
@@ -32,18 +33,19 @@ constexpr double program_bytes = 15e6;
 
 Cost cost_of(const Method& method, int dimension, bool regular, bool plain_box) {
   const bool solid = dimension == 3;
-  if (!has_pairs(method.formulation))
-    return {solid ? 500.0 : 370.0, 0, solid ? 40.0 : 20.0, 0, solid ? 3.0 : 2.0};
-  if (method.formulation.starts_with("ul_"))
-    return {solid ? 330.0 : 320.0, 6, method.formulation == "ul_basic" ? 60.0 : 150.0, 3.5,
-            solid ? 4.0 : 2.0};
+  const FormulationTraits& traits = formulation_traits(method.formulation);
+  if (!traits.pairs) return {solid ? 500.0 : 370.0, 0, solid ? 40.0 : 20.0, 0, solid ? 3.0 : 2.0};
+  if (traits.reference == Reference::updated)
+    return {solid ? 330.0 : 320.0, 6, has_parameter(method.formulation, "artificial_stress") ? 150.0 : 60.0,
+            3.5, solid ? 4.0 : 2.0};
   const double base = solid ? 600 : 370;
-  if (method.formulation != "tl_displacement")  // pairs with a stress of their own
+  if (traits.stress == StressAt::bonds)  // pairs with a stress of their own
     return {base, regular ? 0.0 : 33.0, 60, 8, solid ? 18.0 : 8.0};
-  const bool compatible = method.operators == "compatible";
+  const OperatorTraits& operators = operator_traits(method.operators);
+  const bool compatible = operators.areas && operators.adjoint;
   if (regular && (plain_box || !compatible)) return {solid ? 540.0 : 360.0, 0, 7, 0.83, solid ? 8.0 : 3.0};
   if (compatible) return {base, 62, 20, 4, solid ? 19.0 : 8.0};
-  if (method.operators == "antisymmetric") return {base, 46, 20, 2.75, solid ? 22.0 : 9.0};
+  if (operators.areas) return {base, 46, 20, 2.75, solid ? 22.0 : 9.0};
   return {base, 18, 20, 2.75, solid ? 11.0 : 5.5};
 }
 
@@ -52,8 +54,11 @@ double step_factor(const Method& method, int dimension, bool jittered) {
   double factor = jittered ? 0.92 : 1;
   if (!has_pairs(method.formulation)) return factor;
   if (method.viscosity > 0) factor *= 0.62;
-  if (method.operators == "standard") return 2.2 * factor;
-  if (method.operators == "corrected" && jittered) factor *= 0.7;
+  if (has_operators(method.formulation)) {
+    const OperatorTraits& operators = operator_traits(method.operators);
+    if (operators.exact < 1) return 2.2 * factor;
+    if (operators.exact == 1 && !operators.areas && jittered) factor *= 0.7;
+  }
   if (dimension == 1) return 1.4 * factor;
   if (method.support_dx > 2) return 1.2 * factor;
   return (dimension == 3 ? 0.8 : 1.0) * factor;
@@ -164,7 +169,7 @@ Estimate estimate(const Scene& scene, const RunSpec& run, const SweepPoint& poin
       places *= std::max(std::round(edge / dx), 1.0) + (lattice.kind == Lattice::node_centred);
     e.particles = std::max(1.0, places * body.fraction);
   }
-  const bool updated = run.method.formulation.starts_with("ul_");
+  const bool updated = is_updated(run.method.formulation);
   const double skin = updated ? 1 + run.method.skin : 1;
   const double each =
       has_pairs(run.method.formulation) ? neighbours(run.method.support_dx * skin, scene.dimension) : 0;

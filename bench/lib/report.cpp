@@ -115,9 +115,7 @@ void write_runs(HtmlPage& page, const SceneReport& part) {
          {s.loop_s > 0 ? fmt::format("{:.1f}", s.particle_steps / s.loop_s * 1e-6) : "", "number"},
          {group.dx > 0 ? fmt::format("{:g}", group.dx * 1e3) : "", "number"},
          {fmt::format("{}", first.particles), "number"},
-         {m.formulation +
-              (m.formulation.starts_with("tl_") && has_pairs(m.formulation) ? ", " + m.operators : ""),
-          "wrap"},
+         {m.formulation + (has_operators(m.formulation) ? ", " + m.operators : ""), "wrap"},
          {first.material, "wrap"},
          {has_pairs(m.formulation) ? fmt::format("{}, {}, {:g} dx", lattice, m.kernel, m.support_dx)
                                    : lattice,

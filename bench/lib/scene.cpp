@@ -2,8 +2,15 @@
 #include <cmath>
 #include <lib/scene.hpp>
 #include <numbers>
+#include <taut/materials/registry.hpp>
 
 namespace taut::bench {
+
+void keep_own(MaterialSpec& material) {
+  const std::vector<Parameter>& own = material_registry().find(material.model).parameters;
+  std::erase_if(material.parameters.other,
+                [&](const auto& given) { return !find_parameter(own, given.first); });
+}
 
 double HistorySpec::factor(double t) const {
   if (type == "table") {
@@ -61,7 +68,10 @@ std::optional<double> value_of(const SweepPoint& point, const std::string& name)
 }
 
 MaterialSpec adapted(MaterialSpec material, const RunSpec& run, const SweepPoint& point) {
-  if (!run.material.empty()) material.model = run.material;
+  if (!run.material.empty()) {
+    material.model = run.material;
+    keep_own(material);
+  }
   if (run.plane) material.parameters.plane = *run.plane;
   if (const auto nu = value_of(point, "nu")) material.parameters.nu = *nu;
   return material;

@@ -44,6 +44,9 @@ struct MaterialSpec {
   Place place;
 };
 
+/// Leaves out what its model has no parameter for, as where a run has a model of its own.
+void keep_own(MaterialSpec& material);
+
 /// A part of the body: a face of its bounding box, a box of intervals, or both at once.
 struct Selection {
   std::string on;  ///< "x_min" … "z_max", or empty

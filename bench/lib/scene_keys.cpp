@@ -1,9 +1,21 @@
+#include <lib/names.hpp>
 #include <lib/scene_keys.hpp>
 
 namespace taut::bench {
 
-const std::vector<SceneTable>& scene_tables() {
-  static const std::vector<SceneTable> tables = {
+namespace {
+
+std::vector<std::string> joined(std::vector<std::string> first, const std::vector<Parameter>& parameters,
+                                const std::vector<std::string>& last = {}) {
+  for (const Parameter& p : parameters) first.push_back(p.name);
+  first.insert(first.end(), last.begin(), last.end());
+  return first;
+}
+
+}  // namespace
+
+std::vector<SceneTable> scene_tables() {
+  return {
       {"top level",
        "",
        {"scene", "geometry", "lattice", "material", "region", "boundary", "initial", "solve", "probe",
@@ -18,8 +30,8 @@ const std::vector<SceneTable>& scene_tables() {
       {"geometry", "difference", {"of"}},
       {"geometry", "csv", {"file"}},
       {"lattice", "", {"kind", "dx", "jitter", "seed"}},
-      {"material", "", {"model", "E", "nu", "density", "plane"}},
-      {"region", "", {"on", "where", "model", "E", "nu", "density", "plane"}},
+      {"material", "", joined({"model"}, material_parameters())},
+      {"region", "", joined({"on", "where", "model"}, material_parameters())},
       {"boundary", "", {"type"}},
       {"boundary", "clamp", {"on", "where", "layers"}},
       {"boundary", "roller", {"on", "where", "axis"}},
@@ -59,34 +71,12 @@ const std::vector<SceneTable>& scene_tables() {
       {"reference", "analytic", {"analytic"}},
       {"printed", "", {"label", "column", "runs", "scale"}},
       {"sweep", "", {"load", "nu", "dx", "region_density"}},
-      {"run",
-       "",
-       {"label",
-        "only",
-        "formulation",
-        "operators",
-        "kernel",
-        "support_dx",
-        "neighbours",
-        "pair_precision",
-        "zero_energy_control",
-        "viscosity",
-        "skin",
-        "velocity_gradient",
-        "artificial_stress",
-        "artificial_stress_exponent",
-        "artificial_stress_weight",
-        "lattice",
-        "dx",
-        "jitter",
-        "seed",
-        "material",
-        "plane",
-        "solve"}},
+      {"run", "",
+       joined({"label", "only", "formulation"}, method_parameters(),
+              {"lattice", "dx", "jitter", "seed", "material", "plane", "solve"})},
       {"picture", "", {"title", "field", "view", "of", "runs"}},
       {"quick", "", {"load", "nu", "dx", "region_density", "runs", "duration", "tolerance"}},
   };
-  return tables;
 }
 
 std::vector<std::string> keys_of(std::string_view table, std::string_view variant) {

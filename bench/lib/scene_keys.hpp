@@ -17,7 +17,9 @@ struct SceneTable {
   std::vector<std::string> keys;
 };
 
-const std::vector<SceneTable>& scene_tables();
+/// Those of runs and materials are their own, the parameters of formulations, operators and materials between
+/// them: also of those that the program has added.
+std::vector<SceneTable> scene_tables();
 /// Keys of a table, those of one variant included.
 std::vector<std::string> keys_of(std::string_view table, std::string_view variant = "");
 /// The stresses that pictures may show.

@@ -119,6 +119,7 @@ void choose_methods(const TableReader& top, Scene& scene) {
     for (const std::string& key : keys_of("run"))
       if (key != "formulation" && reader.has(key)) given.insert(key);
     run.automatic = apply_auto_rules(facts_of(scene, run, given), given, run.method);
+    check_method_keys(reader, run.method);
   }
 }
 

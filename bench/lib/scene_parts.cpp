@@ -3,6 +3,7 @@
 #include <lib/names.hpp>
 #include <lib/scene_keys.hpp>
 #include <lib/scene_parts.hpp>
+#include <taut/materials/registry.hpp>
 
 namespace taut::bench {
 
@@ -94,11 +95,22 @@ namespace {
 void read_material_keys(const TableReader& reader, MaterialSpec& material, bool all) {
   MaterialParameters& p = material.parameters;
   if (all || reader.has("model")) material.model = reader.choice("model", names().materials);
+  const MaterialEntry& entry = material_registry().find(material.model);
+  const std::vector<Parameter> own = parameters_of(entry);
+  for (const Parameter& other : material_parameters())
+    if (reader.has(other.name) && !find_parameter(own, other.name))
+      reader.fail_at(other.name, fmt::format("{} has no such key; it has: {}", material.model,
+                                             join_names(parameter_names(own))));
   if (all || reader.has("E")) p.E = reader.number("E", Range::positive());
   if (all || reader.has("nu")) p.nu = reader.number("nu", Range{-1, 0.5, true, true});
   if (all || reader.has("density")) p.density = reader.number("density", Range::positive());
   if (reader.has("plane"))
-    p.plane = reader.choice("plane", {"strain", "stress"}) == "stress" ? Plane::stress : Plane::strain;
+    p.plane = reader.choice("plane", find_parameter(own, "plane")->choices()) == "stress" ? Plane::stress
+                                                                                          : Plane::strain;
+  keep_own(material);
+  for (const Parameter& extra : entry.parameters)
+    if (reader.has(extra.name) || (extra.required && !p.other.contains(extra.name)))
+      p.other.insert_or_assign(extra.name, reader.value(extra));
 }
 
 }  // namespace

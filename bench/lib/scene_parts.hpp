@@ -44,6 +44,9 @@ ProbeSpec read_probe(const Node& node, const SceneContext& context);
 PictureSpec read_picture(const Node& node, const SceneContext& context);
 
 // scene_run.cpp
+/// \throws InputError at a key that the method's formulation and operators do not have, listing those they
+/// have, and for one that they need. Of `auto` none is known before it has chosen.
+void check_method_keys(const TableReader& reader, const Method& method);
 RunSpec read_run(const Node& node, const LatticeSpec* lattice, const SolveSpec& solve);
 
 }  // namespace taut::bench

@@ -3,8 +3,33 @@
 #include <lib/names.hpp>
 #include <lib/scene_keys.hpp>
 #include <lib/scene_parts.hpp>
+#include <taut/formulations/registry.hpp>
+#include <taut/operators/method.hpp>
 
 namespace taut::bench {
+namespace {
+
+/// Those that a run may give: all of them before `auto` has chosen.
+std::vector<Parameter> parameters_of_run(const Method& m) {
+  return formulation_registry().look_up(m.formulation) ? parameters_of(m.formulation, m.operators)
+                                                       : method_parameters();
+}
+
+}  // namespace
+
+void check_method_keys(const TableReader& reader, const Method& m) {
+  const std::vector<Parameter> own = parameters_of_run(m);
+  for (const Parameter& p : method_parameters())
+    if (reader.has(p.name) && !find_parameter(own, p.name))
+      reader.fail_at(p.name,
+                     fmt::format("{}{} has no such key; it has: {}", m.formulation,
+                                 has_operators(m.formulation) ? " with " + m.operators + " operators" : "",
+                                 own.empty() ? "none" : join_names(parameter_names(own))));
+  if (formulation_registry().look_up(m.formulation))
+    for (const Parameter& p : own)
+      if (p.required) reader.require(p.name);
+}
+
 namespace {
 
 Method read_method(const TableReader& reader) {
@@ -14,22 +39,10 @@ Method read_method(const TableReader& reader) {
   formulations.insert(formulations.begin(), "auto");
   m.formulation = reader.choice("formulation", formulations);
   m.operators = reader.choice("operators", names().operators, m.operators);
-  m.kernel = reader.choice("kernel", names().kernels, m.kernel);
-  // Below one spacing no lattice particle has a neighbour; beyond ten a list no longer fits any memory.
-  m.support_dx =
-      reader.number("support_dx", Range{1, 10, true, false}, default_support(m.formulation, m.operators));
-  m.neighbours = reader.choice("neighbours", names().neighbours, m.neighbours);
-  m.pair_precision = pair_precision(reader.choice("pair_precision", pair_precision_names(), "automatic"));
-  if (reader.has("zero_energy_control"))
-    m.zero_energy_control = reader.number("zero_energy_control", Range::non_negative());
-  m.viscosity = reader.number("viscosity", Range::non_negative(), m.viscosity);
-  m.skin = reader.number("skin", Range{0, 2, false, false}, m.skin);
-  m.velocity_gradient = reader.choice("velocity_gradient", {"standard", "corrected"}, m.velocity_gradient);
-  m.artificial_stress = reader.number("artificial_stress", Range::non_negative(), m.artificial_stress);
-  m.artificial_stress_exponent =
-      reader.number("artificial_stress_exponent", Range::positive(), m.artificial_stress_exponent);
-  m.artificial_stress_weight =
-      reader.choice("artificial_stress_weight", {"kernel", "distance"}, m.artificial_stress_weight);
+  m.support_dx = default_support(m.formulation, m.operators);
+  check_method_keys(reader, m);
+  for (const Parameter& p : parameters_of_run(m))
+    if (reader.has(p.name)) set_parameter(m, p.name, reader.value(p));
   return m;
 }
 

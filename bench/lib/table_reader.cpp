@@ -7,20 +7,6 @@
 
 namespace taut::bench {
 
-bool Range::contains(double value) const {
-  return (open_min ? value > min : value >= min) && (open_max ? value < max : value <= max);
-}
-
-std::string Range::str() const {
-  const bool low = min > -std::numeric_limits<double>::max(), high = max < std::numeric_limits<double>::max();
-  const char* above = open_min ? "greater than" : "at least";
-  const char* below = open_max ? "less than" : "at most";
-  if (low && high) return fmt::format("{} {:g} and {} {:g}", above, min, below, max);
-  if (low) return fmt::format("{} {:g}", above, min);
-  if (high) return fmt::format("{} {:g}", below, max);
-  return "any finite number";
-}
-
 std::string join(const std::vector<std::string>& names) { return fmt::format("{}", fmt::join(names, ", ")); }
 
 TableReader::TableReader(const Node& node, std::string table, const std::vector<std::string>& keys)
@@ -132,6 +118,14 @@ std::int64_t TableReader::integer(const std::string& key, std::int64_t min, std:
 std::int64_t TableReader::integer(const std::string& key, std::int64_t min, std::int64_t max,
                                   std::int64_t fallback) const {
   return has(key) ? integer(key, min, max) : fallback;
+}
+
+ParameterValue TableReader::value(const Parameter& parameter) const {
+  if (parameter.type == Parameter::Type::choice) return choice(parameter.name, parameter.choices());
+  const double number = this->number(parameter.name, parameter.range);
+  if (parameter.type == Parameter::Type::whole && number != std::floor(number))
+    fail_at(parameter.name, fmt::format("is {:g}, but must be a {}", number, parameter.domain()));
+  return number;
 }
 
 std::vector<double> TableReader::vector(const std::string& key, std::size_t size) const {

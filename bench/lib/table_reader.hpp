@@ -3,24 +3,15 @@
 /// Typed, checked access to the keys of one table of a scene.
 
 #include <lib/toml_node.hpp>
-#include <limits>
 #include <optional>
 #include <string>
+#include <taut/base/parameters.hpp>
 #include <vector>
 
 namespace taut::bench {
 
-/// Numbers a key takes; both ends excluded where `open`.
-struct Range {
-  double min = -std::numeric_limits<double>::max(), max = std::numeric_limits<double>::max();
-  bool open_min = false, open_max = false;
-
-  static Range any() { return {}; }
-  static Range positive() { return {0, std::numeric_limits<double>::max(), true, false}; }
-  static Range non_negative() { return {0, std::numeric_limits<double>::max(), false, false}; }
-  bool contains(double value) const;
-  std::string str() const;
-};
+/// Numbers a key takes.
+using Range = Interval;
 
 /// "a, b, c".
 std::string join(const std::vector<std::string>& names);
@@ -52,6 +43,8 @@ class TableReader {
   std::int64_t integer(const std::string& key, std::int64_t min, std::int64_t max,
                        std::int64_t fallback) const;
   std::int64_t integer(const std::string& key, std::int64_t min, std::int64_t max) const;
+  /// The value of a parameter, in its range or one of its choices.
+  ParameterValue value(const Parameter& parameter) const;
   /// Exactly `size` numbers.
   std::vector<double> vector(const std::string& key, std::size_t size) const;
   /// One number or a non-empty array of them.

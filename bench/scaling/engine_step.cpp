@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <lib/names.hpp>
 #include <scaling/engine_step.hpp>
 #include <taut/base/error.hpp>
 #include <taut/kernels/kernel.hpp>
@@ -36,7 +37,7 @@ std::shared_ptr<const Material<D>> step_material(bool updated) {
 
 template <int D>
 EngineStep<D>::EngineStep(Cloud<D> cloud, const Method& method)
-    : updated_(method.formulation.starts_with("ul_")),
+    : updated_(is_updated(method.formulation)),
       dx_(cloud.dx),
       simulation_(std::move(cloud), step_material<D>(updated_), method) {
   if (updated_) {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <lib/names.hpp>
 #include <map>
 #include <scaling/body.hpp>
 #include <scaling/row_query.hpp>
@@ -46,9 +47,10 @@ int neighbours_of(const Row& row) {
   }
 }
 
+bool is_dense_case(const Row& row) { return exactness(row.operators) == 0; }
+
 bool is_step(const Row& row) {
-  return row.operators != "standard" &&
-         (row.formulation.starts_with("tl_") || row.formulation.starts_with("ul_"));
+  return !is_dense_case(row) && formulation_registry().look_up(row.formulation);
 }
 
 std::string case_label(const Row& row) {
@@ -56,7 +58,7 @@ std::string case_label(const Row& row) {
   if (row.formulation == "baseline_eigen") return "Eigen sparse products";
   if (row.formulation == "baseline_dense") return "dense matrices";
   const std::string cloud = row.scene.substr(0, row.scene.find('_'));
-  if (row.formulation.starts_with("ul_")) return "UL " + cloud;
+  if (is_updated(row.formulation)) return "UL " + cloud;
   return "TL " + cloud + ", " + row.precision;
 }
 

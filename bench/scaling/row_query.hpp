@@ -29,7 +29,8 @@ std::vector<Row> cases_of(const std::vector<Row>& rows, const std::string& quant
 /// Neighbours inside the cube that a row is of, 0 where it is of none.
 int neighbours_of(const Row& row);
 int dimension_of(const Row& row);
-bool is_step(const Row& row);  ///< of taut's own
+bool is_dense_case(const Row& row);  ///< of operators that are not corrected, as dense matrices are
+bool is_step(const Row& row);        ///< of taut's own
 /// "TL lattice, shared", "UL lattice", "csr".
 std::string case_label(const Row& row);
 /// The largest number of threads of all rows.

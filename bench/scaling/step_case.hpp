@@ -2,6 +2,7 @@
 /// \file
 /// A body whose steps are timed, and its columns in results.csv.
 
+#include <lib/names.hpp>
 #include <optional>
 #include <scaling/body.hpp>
 #include <scaling/engine_step.hpp>
@@ -19,7 +20,7 @@ struct StepSpec {
   PairPrecision precision = PairPrecision::automatic;  ///< total Lagrangian only
   std::vector<int> threads = {1};
 
-  bool total() const { return formulation == "tl_displacement"; }
+  bool total() const { return !is_updated(formulation); }
 };
 
 template <int D>

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <lib/names.hpp>
 #include <map>
 #include <scaling/row_query.hpp>
 #include <scaling/summary.hpp>
@@ -14,15 +15,15 @@ constexpr double million = 1e-6;
 int colour_of(const Row& row) {
   if (row.formulation == "baseline_csr") return 6;
   if (row.formulation == "baseline_eigen") return 7;
-  if (row.formulation.starts_with("ul_")) return 5;
+  if (is_updated(row.formulation)) return 5;
   if (row.scene.starts_with("jittered")) return 4;
   return row.precision == "shared" ? 0 : row.precision == "single" ? 1 : row.precision == "double" ? 2 : 3;
 }
 
 /// Jittered clouds stand in charts with the payload that suits them.
 bool charted(const Row& row) {
-  return is_step(row) && (row.formulation.starts_with("ul_") || row.scene.starts_with("lattice") ||
-                          row.precision == "single");
+  return is_step(row) &&
+         (is_updated(row.formulation) || row.scene.starts_with("lattice") || row.precision == "single");
 }
 
 /// Which points of which rows a line joins: those with the same label, in the order of x.
@@ -67,7 +68,7 @@ Chart rate_against_particles(const std::vector<Row>& rows) {
   const std::int64_t threads = most_threads(rows);
   const int fewest = fewest_neighbours(rows);
   const auto chosen = cases_of(rows, "rate", [&](const Row& r) {
-    const bool usual = r.formulation.starts_with("ul_") ||
+    const bool usual = is_updated(r.formulation) ||
                        (r.scene.starts_with("lattice") ? r.precision == "shared" : r.precision == "single");
     return dimension_of(r) == 3 && is_step(r) && r.threads == threads && neighbours_of(r) == fewest && usual;
   });
@@ -83,10 +84,9 @@ Chart rate_against_threads(const std::vector<Row>& rows) {
   const std::int64_t size = main_size(rows);
   const int fewest = fewest_neighbours(rows);
   const auto chosen = cases_of(rows, "rate", [&](const Row& r) {
-    return dimension_of(r) == 3 && r.particles == size && neighbours_of(r) == fewest &&
-           r.operators != "standard" &&
+    return dimension_of(r) == 3 && r.particles == size && neighbours_of(r) == fewest && !is_dense_case(r) &&
            (!is_step(r) || (charted(r) && r.precision != "double" && r.precision != "recomputed") ||
-            r.formulation.starts_with("ul_"));
+            is_updated(r.formulation));
   });
   Chart chart{"rate_threads", fmt::format("Steps of {} particles, {} neighbours, 3D", size, fewest), "",
               "threads", "million particle-steps/s"};
@@ -103,7 +103,7 @@ Chart rate_against_threads(const std::vector<Row>& rows) {
 Chart rate_against_neighbours(const std::vector<Row>& rows) {
   const std::int64_t threads = most_threads(rows), size = main_size(rows);
   const auto chosen = cases_of(rows, "rate", [&](const Row& r) {
-    return dimension_of(r) == 3 && r.particles == size && r.threads == threads && r.operators != "standard" &&
+    return dimension_of(r) == 3 && r.particles == size && r.threads == threads && !is_dense_case(r) &&
            !r.scene.starts_with("jittered");
   });
   Chart chart{"rate_neighbours",
@@ -136,7 +136,7 @@ Chart fraction_of_limit(const std::vector<Row>& rows) {
 }
 
 Chart dense_chart(const std::vector<Row>& rows) {
-  const auto chosen = cases_of(rows, "rate", [](const Row& r) { return r.operators == "standard"; });
+  const auto chosen = cases_of(rows, "rate", [](const Row& r) { return is_dense_case(r); });
   Chart chart{"dense", "Steps against dense matrices", "The same operator in double precision.", "particles",
               "million particle-steps/s"};
   chart.log_x = chart.log_y = true;

@@ -16,7 +16,9 @@ std::string must(const Parameter& p) {
   const Interval& r = p.range;
   const bool low = r.min > -largest, high = r.max < largest;
   if (p.type == Parameter::Type::whole)
-    return fmt::format("must be a whole number from {:g} to {:g}", r.min, r.max);
+    return fmt::format("must be a whole number from {:.0f} to {:.0f}", r.min, r.max);
+  if (low && high && r.min == 0 && !r.open_min)
+    return fmt::format("must not be negative, and {} {:g}", r.open_max ? "less than" : "at most", r.max);
   if (low && high)
     return fmt::format("must lie between {:g}{} and {:g}{}", r.min, r.open_min ? " (excluded)" : "", r.max,
                        r.open_max ? " (excluded)" : "");
@@ -55,7 +57,7 @@ std::string Parameter::domain() const {
     case Type::choice:
       return either(choices());
     case Type::whole:
-      return fmt::format("whole number from {:g} to {:g}", range.min, range.max);
+      return fmt::format("whole number from {:.0f} to {:.0f}", range.min, range.max);
     default:
       return range.min <= -largest && range.max >= largest ? "number" : "number " + range.str();
   }
