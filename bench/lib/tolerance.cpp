@@ -280,7 +280,9 @@ void run_tolerance(const CommonOptions& common, const std::vector<Scene>& scenes
     for (Row& row : r.rows(common.threads)) rows.push_back(std::move(row));
     write_results(common.out / "results.csv", rows);
     say.say("\n" + plain_summary(r) + '\n' + r.verdict());
-    if (!r.met) missed += (missed.empty() ? "" : "\n") + r.verdict();
+    if (r.met) continue;
+    if (!missed.empty()) missed += '\n';
+    missed += r.verdict();
   }
   if (results.empty()) throw Interrupted(asked_to_stop(), interrupted);
   const std::vector<std::string> missing = write_tolerance_page(results, common);

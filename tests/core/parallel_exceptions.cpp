@@ -31,7 +31,7 @@ struct Fuse {
   }
 };
 
-constexpr MaterialParameters rubber{.E = 1e6, .nu = 0.3, .density = 1000};
+const MaterialParameters rubber{.E = 1e6, .nu = 0.3, .density = 1000};
 
 class Elastic final : public Hyperelastic<2> {
  public:
