@@ -194,6 +194,7 @@ TEST_CASE("bond-associated: a jittered cantilever comes to rest") {
 TEST_CASE("bond-associated: control on top is refused") {
   Method how = method("corrected", 1.5);
   how.zero_energy_control = 1;
-  Simulation<2> s(brick<2>(8), rubber<2>(), how);
-  CHECK_THROWS_WITH_AS(s.prepare(), doctest::Contains("zero_energy_control"), InputError);
+  // When the method is given, before anything is set up.
+  CHECK_THROWS_WITH_AS(Simulation<2>(brick<2>(8), rubber<2>(), how), doctest::Contains("zero_energy_control"),
+                       InputError);
 }
