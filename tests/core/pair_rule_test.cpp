@@ -97,8 +97,8 @@ TEST_CASE("pairs across slits of one cell and two do not count") {
       for (const int cells : {1, 2})
         for (const double support : {1.5, 2.4}) {
           const Cloud<2> cloud = slit_strip(cells, lattice, jitter);
-          Particles<2> p =
-              assemble<2>(cloud, {rubber()}, std::vector<std::uint8_t>(cloud.size(), 0), {}, support * dx);
+          Particles<2> p = assemble<2>(cloud, {rubber()}, std::vector<std::uint8_t>(cloud.size(), 0),
+                                       {{}, {}, support * dx});
           const auto rule = PairRule<2>::make(cloud, p, {}, nullptr, support * dx);
           REQUIRE(rule);
           PairList pairs = find_pairs<2>(points_of<2>(p.X, p.n), support * dx);
@@ -133,7 +133,7 @@ TEST_CASE("arms that lie a cell apart move as if each were alone") {
 TEST_CASE("bodies without a concave place have all their pairs, to the last bit") {
   const Cloud<2> cloud = make_cloud(box<2>({0, 0}, {1, 1}), {.dx = dx, .jitter = 0.2});
   const Particles<2> p =
-      assemble<2>(cloud, {rubber()}, std::vector<std::uint8_t>(cloud.size(), 0), {}, 1.5 * dx);
+      assemble<2>(cloud, {rubber()}, std::vector<std::uint8_t>(cloud.size(), 0), {{}, {}, 1.5 * dx});
   CHECK(PairRule<2>::make(cloud, p, {}, nullptr, 1.5 * dx) == nullptr);
 }
 
