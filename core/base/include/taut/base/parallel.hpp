@@ -8,6 +8,14 @@
 #include <mutex>
 #include <type_traits>
 
+// A program that is compiled without OpenMP loops on one thread, without a warning of pragmas that it does
+// not know.
+#ifdef _OPENMP
+#define TAUT_OMP(...) _Pragma(#__VA_ARGS__)
+#else
+#define TAUT_OMP(...)
+#endif
+
 namespace taut {
 
 /// Fewer particles are done sooner than threads are woken.
@@ -43,11 +51,13 @@ class ParallelError {
 // user's (materials, functions) or takes memory is looped over like this: an exception that leaves an OpenMP
 // region ends the program. Regions of pure arithmetic may do without (.ci/check_parallel.py lists them).
 
+// It takes these macros for calls.
+// clang-format off
 /// Contiguous shares, which depend on the numbers of indices and threads alone.
 template <class Count, class Body>
 void parallel_for(Count count, bool worth, Body&& body) {
   ParallelError error;
-#pragma omp parallel for schedule(static) if (worth)
+TAUT_OMP(omp parallel for schedule(static) if (worth))
   for (Count i = 0; i < count; ++i)
     if (!error.thrown()) error.guard([&] { body(i); });
   error.rethrow();
@@ -59,13 +69,13 @@ template <class Count, class State, class Body, class Merge>
 void parallel_for(Count count, bool worth, const State& initial, Body&& body, Merge&& merge) {
   static_assert(std::is_nothrow_copy_constructible_v<State>);
   ParallelError error;
-#pragma omp parallel if (worth)
+TAUT_OMP(omp parallel if (worth))
   {
     State mine = initial;
-#pragma omp for schedule(static)
+TAUT_OMP(omp for schedule(static))
     for (Count i = 0; i < count; ++i)
       if (!error.thrown()) error.guard([&] { body(i, mine); });
-#pragma omp critical
+TAUT_OMP(omp critical)
     error.guard([&] { merge(mine); });
   }
   error.rethrow();
@@ -75,7 +85,7 @@ void parallel_for(Count count, bool worth, const State& initial, Body&& body, Me
 template <class Count, class Body>
 void parallel_for_dynamic(Count count, int grain, bool worth, Body&& body) {
   ParallelError error;
-#pragma omp parallel for schedule(dynamic, grain) if (worth)
+TAUT_OMP(omp parallel for schedule(dynamic, grain) if (worth))
   for (Count i = 0; i < count; ++i)
     if (!error.thrown()) error.guard([&] { body(i); });
   error.rethrow();
@@ -85,9 +95,12 @@ void parallel_for_dynamic(Count count, int grain, bool worth, Body&& body) {
 template <class Body>
 void on_threads(bool worth, Body&& body) {
   ParallelError error;
-#pragma omp parallel if (worth)
+TAUT_OMP(omp parallel if (worth))
   error.guard([&] { body(); });
   error.rethrow();
 }
+// clang-format on
 
 }  // namespace taut
+
+#undef TAUT_OMP
