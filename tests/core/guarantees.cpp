@@ -509,7 +509,7 @@ TEST_CASE("F20: options and choices out of range") {
   };
   for (const int iterations : {-1, 2000000000})
     CHECK_REFUSED(with([&](auto& m) { m.compatible_iterations = iterations; }), "compatible_iterations",
-                  "0 and");
+                  "0 to");
   CHECK_REFUSED(with([](auto& m) { m.pair_precision = static_cast<PairPrecision>(77); }), "77", "single",
                 "recomputed");
   CHECK_REFUSED(with([](auto& m) { m.skin = 1e6; }), "skin", "at most");
