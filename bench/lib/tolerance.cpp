@@ -279,7 +279,7 @@ void run_tolerance(const CommonOptions& common, const std::vector<Scene>& scenes
     const ToleranceResult& r = results.back();
     for (Row& row : r.rows(common.threads)) rows.push_back(std::move(row));
     write_results(common.out / "results.csv", rows);
-    say.say("\n" + plain_summary(r) + '\n' + r.verdict());
+    say.say(fmt::format("\n{}\n{}", plain_summary(r), r.verdict()));
     if (r.met) continue;
     if (!missed.empty()) missed += '\n';
     missed += r.verdict();
