@@ -23,8 +23,8 @@ function(taut_require package version target url sha256)
       list(REMOVE_DUPLICATES ${package}_CONSIDERED_VERSIONS)
       set(seen " (there is ${${package}_CONSIDERED_VERSIONS})")
     endif()
-    message(FATAL_ERROR "taut needs ${package} ${version} or later${seen}. Install its package (see README.md, "
-                        "'Two commands') or configure with -DTAUT_FETCH=ON to download it.")
+    message(FATAL_ERROR "taut needs ${package} ${version} or later${seen}. Install its package "
+                        "(see README.md, 'Two commands') or configure with -DTAUT_FETCH=ON to download it.")
   endif()
   FetchContent_Declare(${package} URL ${url} URL_HASH SHA256=${sha256} DOWNLOAD_EXTRACT_TIMESTAMP OFF)
   FetchContent_MakeAvailable(${package})

@@ -27,7 +27,12 @@ struct Boom : std::runtime_error {
 struct Fuse {
   std::atomic<long> left{-1};
   void burn() {
-    if (left.load() > 0 && --left == 0) throw Boom();
+    long now = left.load();
+    while (now > 0)
+      if (left.compare_exchange_weak(now, now - 1)) {
+        if (now == 1) throw Boom();
+        return;
+      }
   }
 };
 

@@ -53,10 +53,10 @@ class TlPlain final : public Formulation<D> {
     this->finish_accelerations(t);
   }
 
-  double stable_step() const override {
+  Fastest fastest() const override {
     double speed = 0;
     for (const auto* law : laws_) speed = std::max(speed, law->wave_speed());
-    return 0.5 * p_.dx / speed;
+    return {.wave_speed = speed, .length = 0.5 * p_.dx};
   }
 
   Mat<D> deformation_gradient(Index i) const override {
