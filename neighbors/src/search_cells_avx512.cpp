@@ -6,6 +6,6 @@
 #if TAUT_SIMD_VARIANTS
 #pragma GCC push_options
 #pragma GCC target("avx2,bmi,bmi2,avx512f,avx512vl,avx512bw,avx512dq,avx512vbmi2,avx512bitalg")
-#include <taut/neighbors/search_cells_sources.hpp>
+#include "search_cells_sources.hpp"
 #pragma GCC pop_options
 #endif
