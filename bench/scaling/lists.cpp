@@ -7,9 +7,9 @@
 #include <scaling/body.hpp>
 #include <scaling/lists.hpp>
 #include <taut/base/error.hpp>
+#include <taut/base/parallel.hpp>
 #include <taut/neighbors/nanoflann.hpp>
 #include <tuple>
-#include <taut/base/parallel.hpp>
 
 namespace taut::bench {
 namespace {

@@ -165,7 +165,7 @@ class Body {
       else
         spin = mode.template tail<3>() / size_;
       const Vec<3> from_centre = spin.cross(shift) / spin.squaredNorm();  // the point, or axis, that stays
-      Mat<3> moments = Mat<3>::Zero();                  // of forces about that point
+      Mat<3> moments = Mat<3>::Zero();                                    // of forces about that point
       moments.template topLeftCorner<D, D>() =
           first_moments_ - resultant_ * from_centre.template head<D>().transpose();
       const double virial = spin.squaredNorm() * moments.trace() - spin.dot(moments * spin);

@@ -192,7 +192,7 @@ void SimulationImpl<D>::prescribe(const Where<D>& where, int axis, PrescribedMot
     throw InputError(fmt::format("prescribe: axis {} is not one of 0 … {}", axis, D - 1));
   // Conditions know the user's coordinates.
   this->conditions.push_back([this, axis, selected = select(where, "prescribe"),
-                        local = motion.seen_from(cloud.origin)] { hold(selected, axis, local); });
+                              local = motion.seen_from(cloud.origin)] { hold(selected, axis, local); });
 }
 template <int D>
 void Simulation<D>::prescribe(const Where<D>& where, int axis, PointHistory<D> displacement,

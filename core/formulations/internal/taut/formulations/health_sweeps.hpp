@@ -51,7 +51,7 @@ void add_spurious_forces(const Particles<D>& p, const std::vector<std::uint8_t>&
                          double limit_inside, double limit_faces, Health& health);
 /// Fewest neighbours, and the fewest particles across.
 template <int D>
-void add_neighbourhoods(const Particles<D>& p, const PairList& pairs, const std::vector<std::uint8_t>& surface,
-                        Health& health);
+void add_neighbourhoods(const Particles<D>& p, const PairList& pairs,
+                        const std::vector<std::uint8_t>& surface, Health& health);
 
 }  // namespace taut
