@@ -1,19 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <taut/base/error.hpp>
-#include <taut/base/powers.hpp>
-#include <taut/formulations/assembly.hpp>
 #include <taut/formulations/auto_method.hpp>
 #include <taut/formulations/registry.hpp>
 #include <taut/geometry/local_origin.hpp>
 #include <taut/integrators/integrator.hpp>
-#include <taut/kernels/kernel.hpp>
-#include <taut/neighbors/search.hpp>
-#include <taut/operators/operators.hpp>
-#include <taut/particles/pair_rule.hpp>
 #include <taut/simulation/input_checks.hpp>
 #include <taut/simulation/rigid_modes.hpp>
 #include <taut/simulation/simulation_impl.hpp>
@@ -36,29 +29,6 @@ class Busy {
 
 }  // namespace
 
-template <int D>
-std::vector<Index> SimulationImpl<D>::select_particles(const Where<D>& where, const char* what) const {
-  must_be_open(what);
-  must_be_callable(what, "predicate", where);
-  std::vector<Index> ids;
-  for (std::size_t i = 0; i < cloud.size(); ++i)
-    if (where(reference_position(i))) ids.push_back(static_cast<Index>(i));
-  return ids;
-}
-template <int D>
-auto SimulationImpl<D>::select(const Where<D>& where, const char* what) const -> Selected {
-  Selected selected{select_particles(where, what), {}};
-  std::vector<char> chosen(cloud.facets.empty() ? 0 : cloud.size(), 0);
-  if (!chosen.empty())
-    for (const Index i : selected.particles) chosen[static_cast<std::size_t>(i)] = 1;
-  for (std::size_t f = 0; f < cloud.facets.size(); ++f)
-    if (!chosen[static_cast<std::size_t>(cloud.facets[f].owner)] &&
-        where(cloud.origin + cloud.facets[f].centre))
-      selected.facets.push_back(static_cast<Index>(f));
-  if (selected.particles.empty() && selected.facets.empty())
-    throw InputError(fmt::format("{} selects no particle", what));
-  return selected;
-}
 template <int D>
 std::size_t SimulationImpl<D>::known(std::size_t id) const {
   if (id >= cloud.size())
@@ -107,7 +77,6 @@ Simulation<D>::Simulation(Cloud<D> cloud, std::shared_ptr<const Material<D>> mat
     : impl_(std::make_shared<SimulationImpl<D>>()) {
   if (!material) throw InputError("a simulation needs a material");
   check_cloud(cloud);
-  check_values(method);
   method = checked_method(complete(method, cloud, *material));
   // What the method has no use for.
   if (!needs_areas(method)) cloud.facets = {};
@@ -140,328 +109,12 @@ Where<D> Simulation<D>::face(std::string_view name) const {
 }
 
 template <int D>
-void Simulation<D>::set_material(const Where<D>& where, std::shared_ptr<const Material<D>> material) {
-  if (!material) throw InputError("set_material: no material");
-  if (impl().materials.size() == 255) throw InputError("set_material: at most 255 materials");
-  const auto number = static_cast<std::uint8_t>(impl().materials.size());
-  const std::vector<Index> ids = impl().select_particles(where, "set_material");
-  if (ids.empty()) throw InputError("set_material selects no particle");
-  std::shared_ptr<Interfaces<D>> interfaces;
-  if (impl().interfaces)
-    interfaces = std::make_shared<Interfaces<D>>(*impl().interfaces);
-  else if (Interfaces<D>::known(impl().cloud))
-    interfaces = std::make_shared<Interfaces<D>>(impl().cloud);
-  if (interfaces) interfaces->assign(impl().cloud, where, number);
-  impl().materials.push_back(std::move(material));
-  for (const Index i : ids) impl().material[static_cast<std::size_t>(i)] = number;
-  impl().interfaces = std::move(interfaces);
-}
-
-template <int D>
-void Simulation<D>::set_velocity(const std::function<Vec<D>(const Vec<D>&)>& velocity) {
-  impl().must_be_open("set_velocity");
-  must_be_callable("set_velocity", "velocity", velocity);
-  impl().initial_velocity = velocity;
-}
-
-template <int D>
-void Simulation<D>::set_displacement(const std::function<Vec<D>(const Vec<D>&)>& displacement) {
-  impl().must_be_open("set_displacement");
-  must_be_callable("set_displacement", "displacement", displacement);
-  impl().initial_displacement = displacement;
-}
-
-template <int D>
-void Simulation<D>::clamp(const Where<D>& where) {
-  impl().conditions.push_back([impl = &impl(), selected = impl().select(where, "clamp")] {
-    for (int d = 0; d < D; ++d) impl->hold(selected, d, {});
-  });
-}
-
-template <int D>
-void Simulation<D>::roller(const Where<D>& where, int axis) {
-  if (axis < 0 || axis >= D)
-    throw InputError(fmt::format("roller: axis {} is not one of 0 … {}", axis, D - 1));
-  impl().conditions.push_back(
-      [impl = &impl(), axis, selected = impl().select(where, "roller")] { impl->hold(selected, axis, {}); });
-}
-
-template <int D>
-void SimulationImpl<D>::prescribe(const Where<D>& where, int axis, PrescribedMotion<D> motion) {
-  if (axis < 0 || axis >= D)
-    throw InputError(fmt::format("prescribe: axis {} is not one of 0 … {}", axis, D - 1));
-  // Conditions know the user's coordinates.
-  this->conditions.push_back([this, axis, selected = select(where, "prescribe"),
-                              local = motion.seen_from(cloud.origin)] { hold(selected, axis, local); });
-}
-template <int D>
-void Simulation<D>::prescribe(const Where<D>& where, int axis, PointHistory<D> displacement,
-                              PointHistory<D> velocity) {
-  must_be_callable("prescribe", "displacement", displacement);
-  impl().prescribe(where, axis, {std::move(displacement), std::move(velocity)});
-}
-template <int D>
-void Simulation<D>::prescribe(const Where<D>& where, int axis, History displacement, History velocity) {
-  must_be_callable("prescribe", "displacement", displacement);
-  impl().prescribe(where, axis, {std::move(displacement), std::move(velocity)});
-}
-
-template <int D>
-void SimulationImpl<D>::hold(const Selected& selected, int axis, const PrescribedMotion<D>& motion) {
-  if (!selected.particles.empty()) constraints.prescribe(places(selected.particles), axis, motion);
-  std::vector<BoundPoint<D>> points;
-  for (const Index f : selected.facets) {
-    BoundPoint<D> point{cloud.facets[static_cast<std::size_t>(f)].centre, {}, f};
-    for (const auto& term : facet_rows.row(static_cast<std::size_t>(f)))
-      point.terms.push_back({term.particle, (term.flips >> axis & 1) ? -term.weight : term.weight});
-    points.push_back(std::move(point));
-  }
-  if (!points.empty()) constraints.hold(std::move(points), axis, motion);
-}
-
-template <int D>
-void Simulation<D>::load(const Where<D>& where, const Vec<D>& force, History history) {
-  if (!force.allFinite()) throw InputError("load: the force is not finite");
-  impl().conditions.push_back([impl = &impl(), selected = impl().select(where, "load"), force,
-                               history = std::move(history)] { impl->add_load(selected, force, history); });
-}
-
-namespace {
-
-// The part of each area along their mean normal; empty where that is nothing, as all around a body.
-template <int D, class Area>
-std::vector<double> facing_weights(std::size_t count, Area&& area) {
-  Vec<D> normal = Vec<D>::Zero();
-  double total = 0, sum = 0;
-  for (std::size_t k = 0; k < count; ++k) {
-    normal += area(k);
-    total += area(k).norm();
-  }
-  if (!(normal.norm() > 1e-12 * total)) return {};
-  normal.normalize();
-  std::vector<double> weight(count);
-  for (std::size_t k = 0; k < count; ++k) sum += weight[k] = std::max(0.0, normal.dot(area(k)));
-  for (double& w : weight) w /= sum;
-  return weight;
-}
-
-}  // namespace
-
-// On the facets selected and those of the particles selected; false where there are none.
-template <int D>
-bool SimulationImpl<D>::add_traction(const Selected& selected, const Vec<D>& force, const History& history) {
-  std::vector<Index> facets = selected.facets;
-  std::vector<char> chosen(cloud.size(), 0);
-  for (const Index i : selected.particles) chosen[static_cast<std::size_t>(i)] = 1;
-  for (std::size_t f = 0; f < cloud.facets.size(); ++f)
-    if (chosen[static_cast<std::size_t>(cloud.facets[f].owner)]) facets.push_back(static_cast<Index>(f));
-  const auto weight = facing_weights<D>(
-      facets.size(), [&](std::size_t k) { return cloud.facets[static_cast<std::size_t>(facets[k])].area; });
-  if (weight.empty()) return false;
-  std::vector<Index> at;
-  std::vector<Vec<D>> forces;
-  for (std::size_t k = 0; k < facets.size(); ++k)
-    if (weight[k] > 0)
-      facet_rows.spread(static_cast<std::size_t>(facets[k]), weight[k] * force, particles,
-                        [&](Index particle, const Vec<D>& part) {
-                          at.push_back(particle);
-                          forces.push_back(part);
-                        });
-  loads.add(std::move(at), std::move(forces), history);
-  return true;
-}
-
-template <int D>
-void SimulationImpl<D>::add_load(const Selected& selected, const Vec<D>& force, History history) {
-  if (!cloud.facets.empty() && add_traction(selected, force, history)) return;
-  const std::vector<Index>& ids = selected.particles;
-  std::vector<double> weight;
-  if (!cloud.B.empty())
-    weight = facing_weights<D>(ids.size(),
-                               [&](std::size_t k) { return cloud.B[static_cast<std::size_t>(ids[k])]; });
-  if (weight.empty()) weight.assign(ids.size(), 1.0 / static_cast<double>(ids.size()));
-  // A particle on a symmetry plane carries its image's load as well.
-  const auto times = multiplicity<D>(cloud, planes);
-  std::vector<Index> at;
-  std::vector<Vec<D>> forces;
-  for (std::size_t k = 0; k < ids.size(); ++k) {
-    if (weight[k] == 0) continue;
-    const auto id = static_cast<std::size_t>(ids[k]);
-    at.push_back(place(id));
-    forces.push_back(force * (weight[k] * times[id]));
-  }
-  loads.add(std::move(at), std::move(forces), std::move(history));
-}
-
-template <int D>
-void Simulation<D>::body_force(const Vec<D>& acceleration, History history) {
-  impl().must_be_open("body_force");
-  if (!acceleration.allFinite()) throw InputError("body_force: the acceleration is not finite");
-  impl().conditions.push_back([impl = &impl(), acceleration, history = std::move(history)] {
-    impl->loads.add_body_force(impl->particles.n, acceleration, history);
-  });
-}
-
-template <int D>
-void Simulation<D>::symmetry_plane(int axis, double at) {
-  impl().must_be_open("symmetry_plane");
-  if (axis < 0 || axis >= D)
-    throw InputError(fmt::format("symmetry_plane: axis {} is not one of 0 … {}", axis, D - 1));
-  if (!std::isfinite(at)) throw InputError(fmt::format("symmetry_plane: {:g} m is no place for a plane", at));
-  const Cloud<D>& cloud = impl().cloud;
-  for (const auto& period : impl().periods)
-    if (period.axis == axis)
-      throw InputError(fmt::format("symmetry_plane: the axis {} is periodic", "xyz"[axis]));
-  double local = coordinate_difference(at, cloud.origin[axis]), sum = 0;
-  for (const Vec<D>& X : cloud.X) sum += X[axis] - local;
-  // Particles that are on the plane but for the rounding of its coordinate are on the plane.
-  if (cloud.origin[axis] != 0)
-    for (const Vec<D>& X : cloud.X)
-      if (std::abs(X[axis] - local) <= coordinate_rounding(at)) local = X[axis];
-  for (const auto& plane : impl().planes)
-    if (plane.axis == axis && std::abs(plane.at - local) < 1e-3 * cloud.dx)
-      throw InputError(fmt::format(
-          "symmetry_plane: there is one across {} at {:g} m already, and a body has one image beyond it",
-          "xyz"[axis], at));
-  impl().planes.push_back({axis, local, sum > 0 ? 0 : 1});
-}
-
-template <int D>
-void Simulation<D>::periodic(int axis, double low, double high) {
-  impl().must_be_open("periodic");
-  if (axis < 0 || axis >= D)
-    throw InputError(fmt::format("periodic: axis {} is not one of 0 … {}", axis, D - 1));
-  if (!(high > low) || !std::isfinite(high - low))
-    throw InputError(fmt::format("periodic: the end {:g} must be above the beginning {:g}", high, low));
-  const auto same = [axis](const auto& other) { return other.axis == axis; };
-  if (std::any_of(impl().planes.begin(), impl().planes.end(), same) ||
-      std::any_of(impl().periods.begin(), impl().periods.end(), same))
-    throw InputError(
-        fmt::format("periodic: the axis {} has a symmetry plane or a period already", "xyz"[axis]));
-  impl().periods.push_back({axis, coordinate_difference(low, impl().cloud.origin[axis]), high - low});
-}
-
-template <int D>
 void Simulation<D>::observe(double interval, std::function<void(double)> f) {
   if (!(interval >= 0) || !std::isfinite(interval))
     throw InputError(fmt::format("observe: the interval {:g} s must not be negative", interval));
   must_be_callable("observe", "observer", f);
   impl().observers.push_back({interval, 0, std::move(f)});
 }
-
-namespace {
-
-// Closed boundaries, for operators that need them: found where nothing is known of them, made of area vectors
-// where these are all there is. Areas that have to be bent too far are an error.
-template <int D>
-void enclose(Cloud<D>& cloud) {
-  if (cloud.facets.empty()) {
-    if (cloud.B.empty()) return enclose_cloud(cloud);
-    // A lattice's lie on the boundary with its particles.
-    if (!cloud.body) place_areas(cloud);
-  }
-  constexpr double tolerable = 0.2;
-  const double change = close_areas(cloud);
-  if (!(change < tolerable))
-    throw InputError(fmt::format(
-        "the boundary area vectors do not enclose the body: closing them (sum B = 0, sum X (x) B = "
-        "volume) would change them by {:.0f} %. Check their signs and the volumes, or leave them out",
-        100 * change));
-}
-
-// The body goes on across a symmetry plane or the end of a period: what ends there is no boundary.
-template <int D>
-void open_facets_on(const std::vector<typename MirrorMap<D>::Plane>& planes,
-                    const std::vector<typename MirrorMap<D>::Period>& periods, Cloud<D>& cloud) {
-  for (const auto& period : periods)
-    for (Facet<D>& f : cloud.facets) {
-      const double in = f.centre[period.axis] - period.low;
-      if (std::min(in, period.length - in) < 1e-6 * cloud.dx) f.area.setZero();
-    }
-  for (const auto& plane : planes)
-    for (Facet<D>& f : cloud.facets)
-      if ((f.centre[plane.axis] - plane.at) * (plane.side == 0 ? -1 : 1) > -1e-6 * cloud.dx) f.area.setZero();
-}
-
-}  // namespace
-
-// Facets become areas of particles, by the same weights that carry tractions and walls.
-template <int D>
-void SimulationImpl<D>::place_facets() {
-  facet_rows = FacetRows<D>(cloud.facets, particles, find_pairs_at_rest(particles, method));
-  particles.B.assign(cloud.size(), Vec<D>::Zero());
-  for (std::size_t f = 0; f < cloud.facets.size(); ++f)
-    facet_rows.spread(f, cloud.facets[f].area, particles,
-                      [&](Index i, const Vec<D>& part) { particles.B[static_cast<std::size_t>(i)] += part; });
-}
-
-namespace {
-template <int D>
-void check_wave_speed(const Material<D>& material) {
-  for (const double speed : {material.wave_speed(), material.wave_speed(1, 1, 1, 1)}) {
-    if (speed > 0 && std::isfinite(speed)) continue;
-    throw InputError(
-        fmt::format("material \"{}\" has the wave speed {:g} m/s, which must be positive and finite: "
-                    "check its modulus and its density of {:g}",
-                    material.name(), speed, material.density()));
-  }
-}
-
-template <int D>
-void build(SimulationImpl<D>& s) {
-  const auto start = std::chrono::steady_clock::now();
-  const bool areas_known = !s.cloud.B.empty() || !s.cloud.facets.empty();
-  const Interfaces<D>* interfaces = s.met();
-  const FormulationTraits& traits = formulation_traits(s.method.formulation);
-  if (interfaces) interfaces->straighten(s.cloud);
-  if (needs_areas(s.method) && s.planes.empty() && s.periods.empty()) enclose(s.cloud);
-  open_facets_on<D>(s.planes, s.periods, s.cloud);
-  const double widest = s.cloud.spacing.empty()
-                            ? s.cloud.dx
-                            : *std::max_element(s.cloud.spacing.begin(), s.cloud.spacing.end());
-  const double reach = s.method.support_dx * widest * (1 + s.method.skin);
-  for (const auto& material : s.materials) check_wave_speed(*material);
-  const bool twins = interfaces && traits.materials == MaterialsMeet::in_twins;
-  s.particles =
-      assemble<D>(s.cloud, s.materials, s.material,
-                  {s.planes, s.periods, reach, traits.reference == Reference::updated}, interfaces, twins);
-  // Areas that are guesses tell nothing. Forms that find their neighbours anew let bodies meet.
-  if (traits.reference == Reference::total && (areas_known || s.cloud.body))
-    s.particles.rule = PairRule<D>::make(s.cloud, s.particles, s.planes, twins ? interfaces : nullptr, reach);
-  if (!s.cloud.facets.empty()) s.place_facets();
-  s.cloud.cells = {};  // the particles have them now
-  s.cloud.cell_share = {};
-  for (const auto& condition : s.conditions) condition();
-  for (const auto& plane : s.planes) {
-    std::vector<Index> on;
-    for (Index i = 0; i < s.particles.n; ++i)
-      if (std::abs(s.particles.X.component(plane.axis)[i] - plane.at) < 1e-6 * s.cloud.dx) on.push_back(i);
-    if (!on.empty()) s.constraints.fix(std::move(on), plane.axis);
-  }
-  s.constraints.finish(s.particles.m);
-  if (s.initial_displacement)
-    for (Index i = 0; i < s.particles.n; ++i)
-      s.particles.u.template set_vec<D>(i, s.initial_displacement(s.particles.reference_position(i)));
-  if (!s.particles.mirror.empty()) s.particles.mirror.vectors(s.particles.u);
-  auto formulation = make_formulation<D>({s.particles, s.constraints, s.loads, s.method});
-  const double step = stable_step(leapfrog_limits, formulation->fastest());
-  if (!(step > 0) || !std::isfinite(step))
-    throw InputError(fmt::format(
-        "the stable step of the body at rest is {:g} s: the highest frequency of its particles has no "
-        "number. Check the material, spacing and volumes (and their units), zero_energy_control, and "
-        "whether particles have neighbours at all",
-        step));
-  s.health = s.health_of_setup = setup_health<D>(s, *formulation);
-  s.formulation = std::move(formulation);
-  // A form on cells has taken them over.
-  s.particles.cells = {};
-  s.particles.cell_share = {};
-  if (s.initial_velocity)
-    for (Index i = 0; i < s.particles.n; ++i)
-      s.particles.v.template set_vec<D>(i, s.initial_velocity(s.particles.reference_position(i)));
-  s.setup_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-}  // namespace
 
 // All or nothing: what a build has changed when it throws is undone.
 template <int D>
@@ -674,8 +327,15 @@ std::size_t Simulation<D>::bytes() const {
          (impl().integrator ? impl().integrator->bytes() : 0);
 }
 
-template class Simulation<1>;
-template class Simulation<2>;
-template class Simulation<3>;
+#define TAUT_INSTANTIATE(D)                                                        \
+  template class Simulation<D>;                                                    \
+  template std::size_t SimulationImpl<D>::known(std::size_t) const;                \
+  template void SimulationImpl<D>::must_be_open(const char*) const;                \
+  template std::vector<Index> SimulationImpl<D>::places(std::vector<Index>) const; \
+  template const Interfaces<D>* SimulationImpl<D>::met() const;
+TAUT_INSTANTIATE(1)
+TAUT_INSTANTIATE(2)
+TAUT_INSTANTIATE(3)
+#undef TAUT_INSTANTIATE
 
 }  // namespace taut

@@ -131,6 +131,10 @@ struct SimulationImpl : SimulationInput<D>, SimulationBuilt<D> {
   void place_facets();
 };
 
+/// Makes particles, conditions and formulation of what the simulation was given. What throws leaves it half
+/// way.
+template <int D>
+void build(SimulationImpl<D>& simulation);
 /// Whether steps of this length reach the end: not if they are lost in its rounding.
 bool advances(double end, double step);
 /// Times from now on at which histories are asked what a relaxation has ahead of it [s].
