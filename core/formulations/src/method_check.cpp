@@ -66,6 +66,10 @@ Method checked_method(Method method) {
   operator_registry().find(method.operators);
   kernel_registry().find(method.kernel);
   search_method(method.neighbours);
+  if (*to_string(method.pair_precision) == '\0')
+    throw InputError(fmt::format("pair_precision: the value {} of PairPrecision has no name; valid: {}",
+                                 static_cast<int>(method.pair_precision),
+                                 join_names(pair_precision_names())));
   const std::vector<Parameter> table = parameters_of(method.formulation, method.operators);
   const std::string owner = fmt::format("formulation \"{}\"", method.formulation);
   for (const char* name :

@@ -64,8 +64,7 @@ Health setup_health(const SimulationImpl<D>& s, const Formulation<D>& formulatio
   Health health;
   check_volume(s, health);
   if (formulation.frequency() > 0) {
-    double speed = 0;
-    for (const auto& material : s.particles.materials) speed = std::max(speed, material->wave_speed());
+    const double speed = s.particles.wave_speed();
     const Index at = formulation.stiffest();
     const double spacing =
         s.particles.spacing.empty() || at < 0 ? s.particles.dx : s.particles.spacing.component(0)[at];

@@ -9,13 +9,6 @@
 
 namespace taut {
 
-void check_values(const Method& method) {
-  if (*to_string(method.pair_precision) == '\0')
-    throw InputError(fmt::format("pair_precision: the value {} of PairPrecision has no name; valid: {}",
-                                 static_cast<int>(method.pair_precision),
-                                 join_names(pair_precision_names())));
-}
-
 namespace {
 
 void same_number(std::size_t particles, std::size_t values, const char* what) {

@@ -4,13 +4,9 @@
 
 #include <taut/base/error.hpp>
 #include <taut/geometry/geometry.hpp>
-#include <taut/operators/method.hpp>
 #include <taut/simulation/simulation.hpp>
 
 namespace taut {
-
-/// \throws InputError for a precision that has no name; what tables and registries check aside.
-void check_values(const Method& method);
 
 /// \throws InputError for a cloud whose parts do not go together or are no numbers, and for one that lies so
 /// far from the origin that its coordinates do not tell its particles apart.
