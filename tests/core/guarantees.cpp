@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <core/refusal.hpp>
 #include <fstream>
 #include <functional>
 #include <limits>
@@ -13,6 +14,7 @@
 #include <vector>
 
 using namespace taut;
+using taut::test::refusal;
 
 namespace {
 
@@ -31,25 +33,6 @@ struct Fuse {
     if (calls++ == at) throw Boom();
   }
 };
-
-std::string refusal(const std::function<void()>& f) {
-  try {
-    f();
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return {};
-}
-
-#define CHECK_REFUSED(statement, ...)                        \
-  do {                                                       \
-    const std::string message = refusal([&] { statement; }); \
-    CAPTURE(message);                                        \
-    for (const char* part : {__VA_ARGS__}) {                 \
-      CAPTURE(part);                                         \
-      CHECK(message.find(part) != std::string::npos);        \
-    }                                                        \
-  } while (false)
 
 Cloud<2> sheet(Lattice lattice = Lattice::node_centred) {
   return make_cloud(box<2>({0, 0}, {1, 0.5}), {.dx = 0.1, .lattice = lattice});

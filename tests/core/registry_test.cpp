@@ -2,9 +2,11 @@
 #include <doctest/doctest.h>
 
 #include <core/discretised.hpp>
+#include <core/refusal.hpp>
 #include <taut/extend.hpp>
 
 using namespace taut;
+using taut::test::refusal;
 
 namespace {
 
@@ -13,15 +15,6 @@ struct Thing {
   int number = 0;
 };
 
-template <class F>
-std::string refusal(F&& f) {
-  try {
-    f();
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return {};
-}
 bool says(const std::string& message, const std::string& part) {
   CAPTURE(message);
   CAPTURE(part);

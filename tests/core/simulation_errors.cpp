@@ -1,6 +1,7 @@
 // What a simulation refuses, in words that a stranger can act on, and how it reports a body that breaks.
 #include <doctest/doctest.h>
 
+#include <core/refusal.hpp>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -28,27 +29,6 @@ Where<2> nowhere() {
 Where<2> everywhere() {
   return [](const Vec<2>&) { return true; };
 }
-
-// The message of the InputError that f throws; empty when it throws none.
-template <class F>
-std::string refusal(F&& f) {
-  try {
-    f();
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return {};
-}
-
-#define CHECK_REFUSED(statement, ...)                        \
-  do {                                                       \
-    const std::string message = refusal([&] { statement; }); \
-    CAPTURE(message);                                        \
-    for (const char* part : {__VA_ARGS__}) {                 \
-      CAPTURE(part);                                         \
-      CHECK(message.find(part) != std::string::npos);        \
-    }                                                        \
-  } while (false)
 
 Method with_formulation(const char* formulation) {
   Method method = with_defaults({});
