@@ -31,6 +31,17 @@ void set_identity(int n, double* A) {
   for (int k = 0; k < n; ++k) A[k * (n + 1)] = 1;
 }
 
+// Sweeps over all pairs of columns p < q until `rotate(p, q)` finds none to rotate.
+template <class Rotate>
+void sweep(int n, Rotate rotate) {
+  bool rotated = true;
+  for (int k = 0; k < most_sweeps && rotated; ++k) {
+    rotated = false;
+    for (int p = 0; p < n; ++p)
+      for (int q = p + 1; q < n; ++q) rotated = rotate(p, q) || rotated;
+  }
+}
+
 // By selection, with the columns that belong to the values.
 template <class Before>
 void sort_columns(int n, double* values, double* vectors, Before before) {
@@ -51,53 +62,43 @@ void symmetric_eigen(int n, double* A, double* values, double* vectors) {
     return A[i >= j ? i + j * n : j + i * n];
   };  // lower triangle
   set_identity(n, vectors);
-  bool rotated = true;
-  for (int sweep = 0; sweep < most_sweeps && rotated; ++sweep) {
-    rotated = false;
-    for (int p = 0; p < n; ++p)
-      for (int q = p + 1; q < n; ++q) {
-        const double off = at(q, p), p_p = at(p, p), q_q = at(q, q);
-        if (off == 0) continue;
-        at(q, p) = 0;
-        // Too small to change a digit of either.
-        if (std::abs(off) <= 0.01 * rounding * std::min(std::abs(p_p), std::abs(q_q))) continue;
-        rotated = true;
-        const Rotation rotation(p_p, q_q, off);
-        const double shift = rotation.t * off;
-        at(p, p) = p_p - shift;
-        at(q, q) = q_q + shift;
-        for (int k = 0; k < n; ++k) {
-          if (k != p && k != q) rotation(at(k, p), at(k, q));
-          rotation(vectors[k + p * n], vectors[k + q * n]);
-        }
-      }
-  }
+  sweep(n, [&](int p, int q) {
+    const double off = at(q, p), p_p = at(p, p), q_q = at(q, q);
+    if (off == 0) return false;
+    at(q, p) = 0;
+    // Too small to change a digit of either.
+    if (std::abs(off) <= 0.01 * rounding * std::min(std::abs(p_p), std::abs(q_q))) return false;
+    const Rotation rotation(p_p, q_q, off);
+    const double shift = rotation.t * off;
+    at(p, p) = p_p - shift;
+    at(q, q) = q_q + shift;
+    for (int k = 0; k < n; ++k) {
+      if (k != p && k != q) rotation(at(k, p), at(k, q));
+      rotation(vectors[k + p * n], vectors[k + q * n]);
+    }
+    return true;
+  });
   for (int k = 0; k < n; ++k) values[k] = at(k, k);
   sort_columns(n, values, vectors, [](double x, double y) { return x < y; });
 }
 
 void right_singular(int n, double* A, double* values, double* vectors) {
   set_identity(n, vectors);
-  bool rotated = true;
-  for (int sweep = 0; sweep < most_sweeps && rotated; ++sweep) {
-    rotated = false;
-    for (int p = 0; p < n; ++p)
-      for (int q = p + 1; q < n; ++q) {
-        double p_p = 0, q_q = 0, off = 0;
-        for (int k = 0; k < n; ++k) {
-          p_p += A[k + p * n] * A[k + p * n];
-          q_q += A[k + q * n] * A[k + q * n];
-          off += A[k + p * n] * A[k + q * n];
-        }
-        if (off == 0 || std::abs(off) <= rounding * std::sqrt(p_p) * std::sqrt(q_q)) continue;
-        rotated = true;
-        const Rotation rotation(p_p, q_q, off);
-        for (int k = 0; k < n; ++k) {
-          rotation(A[k + p * n], A[k + q * n]);
-          rotation(vectors[k + p * n], vectors[k + q * n]);
-        }
-      }
-  }
+  sweep(n, [&](int p, int q) {
+    double p_p = 0, q_q = 0, off = 0;
+    for (int k = 0; k < n; ++k) {
+      p_p += A[k + p * n] * A[k + p * n];
+      q_q += A[k + q * n] * A[k + q * n];
+      off += A[k + p * n] * A[k + q * n];
+    }
+    if (off == 0 || std::abs(off) <= rounding * std::sqrt(p_p) * std::sqrt(q_q)) return false;
+    const Rotation rotation(p_p, q_q, off);
+    for (int k = 0; k < n; ++k) {
+      rotation(A[k + p * n], A[k + q * n]);
+      rotation(vectors[k + p * n], vectors[k + q * n]);
+    }
+    return true;
+  });
   for (int j = 0; j < n; ++j) {
     double square = 0;
     for (int k = 0; k < n; ++k) square += A[k + j * n] * A[k + j * n];

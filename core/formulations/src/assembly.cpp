@@ -45,6 +45,16 @@ void take_cells(const Cloud<D>& cloud, const std::vector<typename MirrorMap<D>::
                       "xyz"[plane.axis], cloud.origin[plane.axis] + plane.at));
 }
 
+template <int D>
+void tie_together(const std::vector<std::vector<Index>>& groups, Particles<D>& p) {
+  if (groups.empty()) return;
+  p.ties.begin.push_back(0);
+  for (const auto& group : groups) {
+    p.ties.particles.insert(p.ties.particles.end(), group.begin(), group.end());
+    p.ties.begin.push_back(p.ties.particles.size());
+  }
+}
+
 // Puts a twin for each part in the place of every particle, material by material, each in the order that
 // there is: pairs never leave a material, so that its particles are best kept together.
 template <int D>
@@ -79,12 +89,7 @@ void split(const Interfaces<D>& interfaces, const std::vector<std::uint8_t>& mat
     own[id] = parts[i];
     p.place[id] = static_cast<Index>(i);
   }
-  if (twins.empty()) return;
-  p.ties.begin.push_back(0);
-  for (const auto& of_one : twins) {
-    p.ties.particles.insert(p.ties.particles.end(), of_one.begin(), of_one.end());
-    p.ties.begin.push_back(p.ties.particles.size());
-  }
+  tie_together(twins, p);
 }
 
 // The body fits its period: it lies in it, and does not fill both of its ends.
@@ -154,11 +159,7 @@ void tie_ends(const Cloud<D>& cloud, const std::vector<typename MirrorMap<D>::Pe
     }
     groups[static_cast<std::size_t>(g)].push_back(i);
   }
-  p.ties.begin.push_back(0);
-  for (const auto& of_one : groups) {
-    p.ties.particles.insert(p.ties.particles.end(), of_one.begin(), of_one.end());
-    p.ties.begin.push_back(p.ties.particles.size());
-  }
+  tie_together(groups, p);
 }
 
 // More images than there are now that particles may have when they have moved.

@@ -71,8 +71,7 @@ void Formulation<D>::inspect() {
   // Neighbours of no elastic body part faster than its waves by this much; those that do are flying apart.
   // However fast a body flies or spins as a whole, they do not part.
   constexpr double runaway = 20;
-  double speed = 0;
-  for (const auto& material : p_.materials) speed = std::max(speed, material->wave_speed());
+  const double speed = p_.wave_speed();
   for (Index i = 0; i < p_.n; ++i) {
     const Vec<D> v = p_.v.template vec<D>(i);
     const double apart = (v - p_.v.template vec<D>(companion_[static_cast<std::size_t>(i)])).squaredNorm();

@@ -7,6 +7,7 @@
 #include <taut/formulations/rest_stiffness.hpp>
 #include <taut/formulations/total_lagrangian.hpp>
 #include <taut/formulations/zero_energy.hpp>
+#include <taut/operators/registry.hpp>
 
 namespace taut {
 
@@ -41,7 +42,7 @@ class TlDisplacement final : public TotalLagrangian<D> {
     if (D == 1) return told_only;
     // Curvature parts a pair from its gradient in proportion to its length.
     const double wide = this->method_.support_dx / 1.5;
-    return wide * wide * (control_ ? 0.15 : taut::rough_limit(this->method_.operators));
+    return wide * wide * (control_ ? 0.15 : operator_traits(this->method_.operators).rough_limit);
   }
   std::size_t bytes() const override { return Base::bytes() + (control_ ? control_->bytes() : 0); }
 

@@ -10,8 +10,6 @@ Registry<OperatorEntry>& operator_registry() {
 
 const OperatorTraits& operator_traits(std::string_view name) { return operator_registry().find(name).traits; }
 
-bool needs_areas(std::string_view operators) { return operator_traits(operators).areas; }
-double rough_limit(std::string_view operators) { return operator_traits(operators).rough_limit; }
 std::vector<std::string> operator_names() { return operator_registry().names(); }
 
 Parameter closure_iterations() {

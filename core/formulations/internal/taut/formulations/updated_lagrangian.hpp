@@ -52,8 +52,7 @@ class UpdatedLagrangian : public Formulation<D> {
   void inspect() override;
 
   Fastest fastest() const override {
-    double speed = 0;
-    for (const auto& material : p_.materials) speed = std::max(speed, material->wave_speed());
+    const double speed = p_.wave_speed();
     return {.wave_speed = speed * (1 + 0.6 * this->method_.viscosity), .length = h_};
   }
   Mat<D> cauchy_stress(Index i) const override {
@@ -413,8 +412,7 @@ void UpdatedLagrangian<D>::acceleration_pass(const Term& term) {
   const double* m = p_.m.component(0);
   const double alpha = this->method_.viscosity;
   const double* rho = rho_.component(0);
-  double speed = 0;
-  for (const auto& material : p_.materials) speed = std::max(speed, material->wave_speed());
+  const double speed = p_.wave_speed();
 #pragma omp parallel for schedule(static) if (p_.n > parallel_from)
   for (Index s = 0; s < groups_.slices(); ++s) {
     const Index i = s * lanes;

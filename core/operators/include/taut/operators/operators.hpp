@@ -106,9 +106,5 @@ template <int D>
 PairOperator<D> make_operator(const Method& method, const Particles<D>& particles, const PairList& pairs,
                               const Kernel& kernel, double smoothing_length);
 std::vector<std::string> operator_names();
-/// Roughness (health_roughness) up to which answers of `tl_displacement` with these operators are good.
-double rough_limit(std::string_view operators);
-/// Whether these operators are made with the boundary area vectors of the particles.
-bool needs_areas(std::string_view operators);
 
 }  // namespace taut

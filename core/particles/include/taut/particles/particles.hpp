@@ -66,6 +66,13 @@ struct Particles {
     return std::max(s[i], s[j]) / dx;
   }
 
+  /// Of the fastest of the materials at rest [m/s].
+  double wave_speed() const {
+    double speed = 0;
+    for (const auto& one : materials) speed = std::max(speed, one->wave_speed());
+    return speed;
+  }
+
   /// The part of V that belongs to the modelled side of the symmetry planes.
   double modelled_share(Index i) const {
     return planes.empty() ? 1 : 1.0 / (1 << std::popcount(planes[static_cast<std::size_t>(i)]));
